@@ -21,7 +21,7 @@ pub mod txt;
 pub mod vtp;
 
 pub use files::{read_body, read_frame, read_particles, read_spheres, read_walls, write_body};
-pub use histories::{BondHistories, JointBond, PlasticBond, SummedBond};
+pub use histories::BondColumn;
 pub use parts::{About, Body};
 pub use stored_frame::{NO_FRAME, StoredFragment, StoredFrame};
 pub use stored_particles::StoredParticles;

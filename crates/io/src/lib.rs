@@ -21,6 +21,7 @@ pub mod surface;
 pub mod text;
 pub mod units;
 pub mod vtk;
+pub mod vtp;
 pub mod write_target;
 mod xml;
 

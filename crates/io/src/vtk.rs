@@ -37,10 +37,10 @@ pub enum Values<'a> {
     Counts(&'a dyn Fn(usize) -> u32),
     /// Whole numbers with a sign.
     Integers(&'a dyn Fn(usize) -> i32),
-    /// This many small numbers each: by the index, and by the number of the component.
-    Flags(usize, &'a dyn Fn(usize, usize) -> u8),
-    /// This many numbers each, in the same way.
-    Tuples(usize, &'a dyn Fn(usize, usize) -> f64),
+    /// This many zeros and ones each, those of each index after those of the one before.
+    Flags(usize, &'a [f64]),
+    /// This many numbers each, in the same order.
+    Tuples(usize, &'a [f64]),
 }
 
 impl Values<'_> {
@@ -76,21 +76,11 @@ impl Values<'_> {
             }
             Self::Counts(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
             Self::Integers(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
-            Self::Flags(components, value) => {
-                out.write_all(&((components * count) as u64).to_le_bytes())?;
-                (0..count).try_for_each(|i| {
-                    let flags: Vec<u8> = (0..*components).map(|k| value(i, k)).collect();
-                    out.write_all(&flags)
-                })
+            Self::Flags(components, values) => {
+                write_array(out, components * count, |i| [[u8::from(values[i] != 0.0)]])
             }
-            Self::Tuples(components, value) => {
-                out.write_all(&((8 * components * count) as u64).to_le_bytes())?;
-                (0..count).try_for_each(|i| {
-                    let numbers: Vec<[u8; 8]> = (0..*components)
-                        .map(|k| value(i, k).to_le_bytes())
-                        .collect();
-                    out.write_all(numbers.as_flattened())
-                })
+            Self::Tuples(components, values) => {
+                write_array(out, components * count, |i| [values[i].to_le_bytes()])
             }
         }
     }
@@ -271,6 +261,7 @@ impl<'a> Declaration<'a> {
             name: array.name,
             shape: match array.values {
                 Values::Vectors(_) | Values::SingleVectors(_) => components(3),
+                Values::Tuples(1, _) => String::new(),
                 Values::Flags(count, _) | Values::Tuples(count, _) => components(count),
                 _ => String::new(),
             },

@@ -273,9 +273,7 @@ impl Made<'_> {
             bond_damages: Vec::new(),
             turns_rad: Vec::new(),
             bond_directions: Vec::new(),
-            bond_sums: Vec::new(),
-            bond_plastics: Vec::new(),
-            bond_joints: Vec::new(),
+            bond_histories: Vec::new(),
             positions: spheres
                 .positions
                 .iter()

@@ -2,6 +2,7 @@
 
 use std::ops::Add;
 
+use dem_io::body::histories::PLASTIC_ELONGATION;
 use dem_io::units::significant;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::BondKind;
@@ -99,10 +100,9 @@ fn shape(
     let end_radii_m = [a.radius_m(), b.radius_m()];
     let given = body.bond_lengths[number];
     let at_rest = (given - distance).abs() <= SAME_LENGTH * distance;
-    let plastic = body.bond_plastics.get(number);
-    let elongation_m = plastic.map_or(0.0, |plastic| plastic.elongation_m);
+    let elongation_m = body.history_of(PLASTIC_ELONGATION, number).first();
     BondShape {
-        length_m: if at_rest { distance } else { given } - elongation_m,
+        length_m: if at_rest { distance } else { given } - elongation_m.unwrap_or(&0.0),
         radius_m: match kind.radius_factor {
             Some(factor) => factor * end_radii_m[0].min(end_radii_m[1]),
             None => body.bond_radii[number],

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use dem_io::body::{About, PlasticBond};
+use dem_io::body::About;
 use dem_io::units::show_length;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{CountedEnergy, Daughters, Material, Scene, WholeMass};
@@ -109,30 +109,12 @@ fn scale(body: &mut Body, parent: &Template) {
     for (place, arm) in body.positions.iter_mut().zip(&arms_m) {
         *place = arm.map(|x| of_centres * x);
     }
-    // Forces grow with the area of the bonds, and moments with the length as well.
-    for sum in &mut body.bond_sums {
-        sum.shear_n = sum.shear_n.map(|x| of_radii.powi(2) * x);
-        sum.moment_n_m = sum.moment_n_m.map(|x| of_radii.powi(3) * x);
+    for column in &mut body.bond_histories {
+        column.grow(of_radii);
     }
-    let slips = body
-        .bond_joints
-        .iter_mut()
-        .flat_map(|joint| &mut joint.slips_m);
-    slips.flatten().for_each(|slip| *slip *= of_radii);
-    let plastic = body.bond_plastics.iter_mut().flat_map(|plastic| {
-        let PlasticBond {
-            elongation_m,
-            slip_m,
-            work_j,
-            ..
-        } = plastic;
-        *work_j *= of_radii.powi(3);
-        slip_m.iter_mut().chain([elongation_m])
-    });
     let lengths = body.radii.iter_mut().chain(&mut body.bond_radii);
     lengths
         .chain(&mut body.bond_lengths)
-        .chain(plastic)
         .for_each(|length| *length *= of_radii);
 }
 

@@ -260,9 +260,7 @@ fn row(particles: usize) -> Body {
         bond_damages: Vec::new(),
         turns_rad: Vec::new(),
         bond_directions: Vec::new(),
-        bond_sums: Vec::new(),
-        bond_plastics: Vec::new(),
-        bond_joints: Vec::new(),
+        bond_histories: Vec::new(),
         bonds,
         about: About {
             particle_density_kg_m3: Some(2050.0),

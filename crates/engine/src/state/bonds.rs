@@ -24,12 +24,15 @@ mod elements;
 pub(crate) mod histories;
 mod law;
 mod softening;
+mod stored;
 mod yielding;
 
 pub use block::{BLOCK, BondBlock, Column};
 pub use histories::Histories;
 use histories::NewBond;
 pub use law::{BondLaw, BondRule};
+pub(crate) use stored::StoredBond;
+use stored::frame_between;
 
 impl BondBlock {
     /// Copies of these bonds.
@@ -269,6 +272,14 @@ impl Bonds {
         }
     }
 
+    /// Gives bond `at` these stress-free distances of the contact point from its two ends, m.
+    pub(crate) fn set_levers_m(&mut self, at: usize, levers_m: [f64; 2]) {
+        let (block, i) = (&mut self.blocks[at / BLOCK], at % BLOCK);
+        for (column, lever) in block.levers_m.iter_mut().zip(levers_m) {
+            column[i] = lever;
+        }
+    }
+
     /// The ends of bond `at`: those of its particles, which plastic deformation has turned.
     fn ends_of(&self, at: usize, poses: &[Pose]) -> [End; 2] {
         let ends = self.ends[at].map(|end| poses[end as usize].end());
@@ -280,9 +291,7 @@ impl Bonds {
 
     /// Rotation of the frame of bond `at`: halfway between those of its two ends.
     pub(crate) fn frame_of(&self, at: usize, poses: &[Pose]) -> UnitQuaternion<f64> {
-        let [a, b] = self.ends_of(at, poses).map(|end| end.turned.into_inner());
-        let sign = a.dot(&b).signum();
-        UnitQuaternion::new_normalize(a + b * sign)
+        frame_between(&self.ends_of(at, poses))
     }
 
     /// Normal stiffness of bond `at`, N/m; 0 if it is broken.

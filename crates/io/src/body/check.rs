@@ -16,7 +16,8 @@ impl Body {
         check_particles(self)?;
         check_bonds(self)?;
         check_about(self)?;
-        histories::check(&self.histories(), &self.bond_lengths)?;
+        histories::check_directions(&self.bond_directions)?;
+        histories::check(&self.bond_histories, &self.bond_lengths)?;
         check_double_bonds(self)
     }
 }
@@ -64,20 +65,12 @@ fn check_lengths(body: &Body) -> Result<()> {
             "bonds",
             bonds,
         ),
-        ("summed loads", given(body.bond_sums.len()), "bonds", bonds),
         (
             "bond damages",
             given(body.bond_damages.len()),
             "bonds",
             bonds,
         ),
-        (
-            "plastic deformations",
-            given(body.bond_plastics.len()),
-            "bonds",
-            bonds,
-        ),
-        ("flat joints", given(body.bond_joints.len()), "bonds", bonds),
     ] {
         if length != wanted {
             return Err(Diagnostic::input(

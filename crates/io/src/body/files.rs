@@ -6,6 +6,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 
+use super::histories::are_more_than_sums;
 use super::parts::Body;
 use super::stored_frame::StoredFrame;
 use super::stored_particles::StoredParticles;
@@ -242,7 +243,7 @@ pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     let storage = Storage::named(path)?;
     body.check()?;
     let is_damaged = body.bond_damages.iter().any(|damage| *damage > 0.0);
-    let has_history = !body.bond_plastics.is_empty() || !body.bond_joints.is_empty();
+    let has_history = are_more_than_sums(&body.bond_histories);
     let is_lost = match storage {
         Storage::Pipe | Storage::Vtp(_) => None,
         _ if is_damaged || has_history => Some("bonds with damage or a history"),

@@ -1,66 +1,81 @@
-//! What the bonds of a body have been through, beyond their damage: how they lie without load,
-//! loads that are summed step by step, plastic deformation, and failed elements of flat joints.
+//! What the bonds of a body have been through, as columns of numbers with names: loads that are
+//! summed step by step, plastic deformation, elements of flat joints, and the history of any other
+//! law, whose columns begin with [`PREFIX`]. The law knows what they mean. Here are the rules of
+//! those that are older than the prefix.
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::vtk::{NamedArray, Values};
+use crate::vtp::{Arrays, Of, Shape};
 
-/// Plastic deformation of a bond. Vectors are in the axes of its body.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct PlasticBond {
-    /// Part of its length, m.
-    pub elongation_m: f64,
-    /// Sliding of its ends past each other, m.
-    pub slip_m: [f64; 3],
-    /// Rotation of its second end relative to the first about its axis, rad.
-    pub twist_rad: f64,
-    /// The same about the axes across it, rad.
-    pub bend_rad: [f64; 3],
-    /// Plastic work, J.
-    pub work_j: f64,
-    /// Rotation vectors of the bond's two ends relative to their particles, in the axes of the
-    /// particles before they turned, rad.
-    pub turns_rad: [[f64; 3]; 2],
-}
-
-/// Load of a bond of the incremental formulation, which is summed step by step. Vectors are in the
-/// axes of its body.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct SummedBond {
-    /// Shear force on its second end, N.
-    pub shear_n: [f64; 3],
-    /// Moment on its second end, N m.
-    pub moment_n_m: [f64; 3],
-}
-
-/// Failed elements of a flat joint.
+/// A column: the same number of numbers for each bond. Vectors are in the axes of the body, or in
+/// those of the scene of a frame.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct JointBond {
-    /// Unit vector from the axis of the bond to the edge at which the first element begins, in the
-    /// axes of its body.
-    pub first_edge: [f64; 3],
-    /// For each element, ring by ring from the axis, whether it has failed. Empty: the bond is no
-    /// flat joint.
-    pub failed: Vec<bool>,
-    /// For each element, how far its faces have slid past each other, m, in the axes of its body.
-    /// Empty: they have not.
-    pub slips_m: Vec<[f64; 3]>,
+pub struct BondColumn {
+    /// Its name, with the unit at its end: `plastic_slip_m`.
+    pub name: String,
+    /// Numbers of each bond: 1, 3 for a vector, or more.
+    pub components: usize,
+    /// Those of each bond after those of the one before. Length: `components` times bonds.
+    pub values: Vec<f64>,
 }
 
-/// What the bonds of a body or a frame have been through, one entry for each bond; of each kind all
-/// or none.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct BondHistories<'a> {
-    /// Unit vectors from the first to the second end without load, in the axes that the particles
-    /// had before they turned.
-    pub directions: &'a [[f64; 3]],
-    /// Loads of bonds of the incremental formulation.
-    pub sums: &'a [SummedBond],
-    /// Plastic deformation.
-    pub plastics: &'a [PlasticBond],
-    /// Elements of flat joints.
-    pub joints: &'a [JointBond],
+impl BondColumn {
+    /// A column of these values.
+    pub fn new(name: &str, components: usize, values: Vec<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            components,
+            values,
+        }
+    }
+
+    /// The numbers of a bond. Empty: there is no such bond.
+    pub fn of(&self, bond: usize) -> &[f64] {
+        let from = bond * self.components;
+        let numbers = self.values.get(from..from + self.components);
+        numbers.unwrap_or_default()
+    }
+
+    /// As an array of a file.
+    pub fn array(&self) -> NamedArray<'_> {
+        let values = match self.components {
+            components if self.is_flags() => Values::Flags(components, &self.values),
+            components => Values::Tuples(components, &self.values),
+        };
+        NamedArray {
+            name: &self.name,
+            values,
+        }
+    }
+
+    /// Makes it that of a body that has grown by a factor with the same strains and stresses: its
+    /// unit tells how its numbers grow.
+    pub fn grow(&mut self, factor: f64) {
+        // Forces grow with the area of the bonds, moments and energies with the length as well.
+        let powers = [("_n_m", 3), ("_j", 3), ("_n", 2), ("_m", 1)];
+        let power = powers.iter().find(|(unit, _)| self.name.ends_with(unit));
+        if let Some((_, power)) = power {
+            let factor = factor.powi(*power);
+            self.values.iter_mut().for_each(|value| *value *= factor);
+        }
+    }
+
+    /// Whether it is of zeros and ones, one byte each in files.
+    fn is_flags(&self) -> bool {
+        self.name == FAILED_ELEMENTS
+    }
+
+    fn has_any(&self) -> bool {
+        self.values.iter().any(|value| *value != 0.0)
+    }
+
+    fn is_finite(&self, bond: usize) -> bool {
+        self.of(bond).iter().all(|value| value.is_finite())
+    }
 }
 
+/// Begins the names of columns, but for those below.
+pub const PREFIX: &str = "history_";
 /// Bond array: unit vector along the bond without load, in the axes of the unturned particles.
 pub const DIRECTION: &str = "initial_direction";
 /// Bond array: summed shear force on the second end, N, a vector.
@@ -89,172 +104,139 @@ pub const ELEMENT_SLIP: &str = "element_slip_m";
 /// Largest difference between the length of a direction and 1.
 const LENGTH_OF_UNIT: f64 = 1e-6;
 
-/// Names of all these arrays.
-pub(crate) const ALL: [&str; 13] = [
-    DIRECTION,
-    SUMMED_SHEAR,
-    SUMMED_MOMENT,
+const SUMS: [&str; 2] = [SUMMED_SHEAR, SUMMED_MOMENT];
+const PLASTICS: [&str; 7] = [
     PLASTIC_TURNS[0],
     PLASTIC_TURNS[1],
-    ELEMENT_SLIP,
     PLASTIC_ELONGATION,
     PLASTIC_SLIP,
     PLASTIC_TWIST,
     PLASTIC_BEND,
     PLASTIC_WORK,
-    FIRST_EDGE,
-    FAILED_ELEMENTS,
 ];
+const JOINTS: [&str; 3] = [FIRST_EDGE, FAILED_ELEMENTS, ELEMENT_SLIP];
 
-/// The numbers of these arrays as read from a file; empty for those that it lacks.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct HistoryArrays {
-    pub(crate) arrays: [Vec<f64>; ALL.len()],
-}
-
-impl HistoryArrays {
-    fn of(&self, name: &str) -> &[f64] {
-        let at = ALL.iter().position(|other| *other == name);
-        at.map_or(&[], |at| &self.arrays[at])
-    }
-
-    /// Direction of each bond without load. Empty: the file has none.
-    pub(crate) fn directions(&self, bonds: usize) -> Vec<[f64; 3]> {
-        self.vectors(DIRECTION, bonds)
-    }
-
-    /// Summed load of each bond. Empty: the file has none.
-    pub(crate) fn sums(&self, bonds: usize) -> Vec<SummedBond> {
-        let shear = self.vectors(SUMMED_SHEAR, bonds);
-        let one = |(shear_n, moment_n_m)| SummedBond {
-            shear_n,
-            moment_n_m,
-        };
-        let moments = self.vectors(SUMMED_MOMENT, bonds);
-        shear.into_iter().zip(moments).map(one).collect()
-    }
-
-    /// A vector for each bond. Empty: the file has no such array.
-    fn vectors(&self, name: &str, bonds: usize) -> Vec<[f64; 3]> {
-        let found = self.of(name).as_chunks().0;
-        found[..bonds.min(found.len())].to_vec()
-    }
-
-    /// Plastic deformation of each bond. Empty: the file has none.
-    pub(crate) fn plastics(&self, bonds: usize) -> Vec<PlasticBond> {
-        if self.of(PLASTIC_ELONGATION).is_empty() {
-            return Vec::new();
+/// How many numbers a column of bonds has in files. None: it is no history.
+pub(crate) fn shape(name: &str) -> Option<Shape> {
+    match name {
+        PLASTIC_ELONGATION | PLASTIC_TWIST | PLASTIC_WORK => {
+            Some(Shape::Each(Of::Cells, 1, "values"))
         }
-        let number = |name: &str, bond: usize| self.of(name).get(bond).copied().unwrap_or(0.0);
-        let vector = |name: &str, bond: usize| self.vector(name, bond).unwrap_or_default();
-        let one = |bond: usize| PlasticBond {
-            elongation_m: number(PLASTIC_ELONGATION, bond),
-            slip_m: vector(PLASTIC_SLIP, bond),
-            twist_rad: number(PLASTIC_TWIST, bond),
-            bend_rad: vector(PLASTIC_BEND, bond),
-            work_j: number(PLASTIC_WORK, bond),
-            turns_rad: PLASTIC_TURNS.map(|name| vector(name, bond)),
-        };
-        (0..bonds).map(one).collect()
-    }
-
-    /// Elements of each bond. Empty: the file has none.
-    pub(crate) fn joints(&self, bonds: usize) -> Vec<JointBond> {
-        let flags = self.of(FAILED_ELEMENTS);
-        if flags.is_empty() || bonds == 0 {
-            return Vec::new();
+        FAILED_ELEMENTS | ELEMENT_SLIP => Some(Shape::Tuples),
+        FIRST_EDGE => Some(Shape::Each(Of::Cells, 3, "values")),
+        name if SUMS.contains(&name) || PLASTICS.contains(&name) => {
+            Some(Shape::Each(Of::Cells, 3, "values"))
         }
-        let count = flags.len() / bonds;
-        let slips = self.of(ELEMENT_SLIP).as_chunks().0;
-        let one = |bond: usize| JointBond {
-            first_edge: self.vector(FIRST_EDGE, bond).unwrap_or_default(),
-            failed: flags[bond * count..(bond + 1) * count]
-                .iter()
-                .map(|flag| *flag != 0.0)
-                .collect(),
-            slips_m: slips
-                .get(bond * count..(bond + 1) * count)
-                .map_or_else(Vec::new, <[[f64; 3]]>::to_vec),
-        };
-        (0..bonds).map(one).collect()
-    }
-
-    fn vector(&self, name: &str, bond: usize) -> Option<[f64; 3]> {
-        self.of(name).as_chunks::<3>().0.get(bond).copied()
+        name => name.starts_with(PREFIX).then_some(Shape::Tuples),
     }
 }
 
-/// Calls `then` with the arrays of these.
-pub fn with_arrays<R>(
-    histories: &BondHistories<'_>,
-    then: impl FnOnce(&[NamedArray<'_>]) -> R,
-) -> R {
-    let BondHistories {
-        directions,
-        sums,
-        plastics,
-        joints,
-    } = *histories;
-    let direction = |bond: usize| directions[bond];
-    let shear = |bond: usize| sums[bond].shear_n;
-    let moment = |bond: usize| sums[bond].moment_n_m;
-    let turn_a = |bond: usize| plastics[bond].turns_rad[0];
-    let turn_b = |bond: usize| plastics[bond].turns_rad[1];
-    let elongation = |bond: usize| plastics[bond].elongation_m;
-    let plastic_slip = |bond: usize| plastics[bond].slip_m;
-    let twist = |bond: usize| plastics[bond].twist_rad;
-    let bend = |bond: usize| plastics[bond].bend_rad;
-    let work = |bond: usize| plastics[bond].work_j;
-    let edge = |bond: usize| joints[bond].first_edge;
-    let count = joints.iter().map(|joint| joint.failed.len());
-    let count = count.max().unwrap_or(0);
-    let failed = |bond: usize, element: usize| {
-        let flag = joints[bond].failed.get(element);
-        u8::from(flag == Some(&true))
+/// Takes the columns of so many bonds from a file, in the order in which this program writes them.
+pub(crate) fn take(arrays: &mut Arrays, bonds: usize) -> Vec<BondColumn> {
+    let old = SUMS.iter().chain(&PLASTICS).chain(&JOINTS);
+    let keys = arrays.named().keys();
+    let newer = keys.filter_map(|key| key.strip_prefix("CellData/"));
+    let newer: Vec<String> = (newer.filter(|name| name.starts_with(PREFIX)))
+        .map(str::to_owned)
+        .collect();
+    let names = old.copied().chain(newer.iter().map(String::as_str));
+    let column = |name: &str| {
+        let values = arrays.take(&format!("CellData/{name}"))?;
+        let components = values.len().checked_div(bonds)?;
+        let mut column = BondColumn::new(name, components, values);
+        if column.is_flags() {
+            let flag = |value: &mut f64| *value = f64::from(u8::from(*value != 0.0));
+            column.values.iter_mut().for_each(flag);
+        }
+        (components > 0).then_some(column)
     };
-    let slip = |bond: usize, number: usize| {
-        let slips = joints[bond].slips_m.as_flattened();
-        slips.get(number).copied().unwrap_or(0.0)
-    };
-    let has_slid = joints.iter().any(|joint| !joint.slips_m.is_empty());
-    let named = |(name, values)| NamedArray { name, values };
-    let of_rest = [(DIRECTION, Values::Vectors(&direction))];
-    let of_sums = [
-        (SUMMED_SHEAR, Values::Vectors(&shear)),
-        (SUMMED_MOMENT, Values::Vectors(&moment)),
-    ];
-    let of_slips = [(ELEMENT_SLIP, Values::Tuples(3 * count, &slip))];
-    let of_plastics = [
-        (PLASTIC_TURNS[0], Values::Vectors(&turn_a)),
-        (PLASTIC_TURNS[1], Values::Vectors(&turn_b)),
-        (PLASTIC_ELONGATION, Values::Scalars(&elongation)),
-        (PLASTIC_SLIP, Values::Vectors(&plastic_slip)),
-        (PLASTIC_TWIST, Values::Scalars(&twist)),
-        (PLASTIC_BEND, Values::Vectors(&bend)),
-        (PLASTIC_WORK, Values::Scalars(&work)),
-    ];
-    let of_joints = [
-        (FIRST_EDGE, Values::Vectors(&edge)),
-        (FAILED_ELEMENTS, Values::Flags(count, &failed)),
-    ];
-    let some = |is_there: bool| move |array: &_| is_there.then_some(*array);
-    let arrays = of_rest.iter().filter_map(some(!directions.is_empty()));
-    let arrays = arrays.chain(of_sums.iter().filter_map(some(!sums.is_empty())));
-    let arrays = arrays.chain(of_plastics.iter().filter_map(some(!plastics.is_empty())));
-    let arrays = arrays.chain(of_joints.iter().filter_map(some(count > 0)));
-    let arrays = arrays.chain(of_slips.iter().filter_map(some(has_slid)));
-    let arrays: Vec<NamedArray<'_>> = arrays.map(named).collect();
-    then(&arrays)
+    names.filter_map(column).collect()
 }
 
-/// Checks the history of bonds of these lengths, m.
-pub(super) fn check(histories: &BondHistories<'_>, lengths_m: &[f64]) -> Result<()> {
-    let BondHistories {
-        directions,
-        sums,
-        plastics,
-        joints,
-    } = *histories;
+/// The columns of some bonds, without what says nothing of them.
+pub(super) fn of_some(columns: &[BondColumn], bonds: &[usize]) -> Vec<BondColumn> {
+    let of = |column: &BondColumn| {
+        let values = bonds.iter().flat_map(|bond| column.of(*bond));
+        BondColumn {
+            values: values.copied().collect(),
+            ..column.clone()
+        }
+    };
+    let some: Vec<BondColumn> = columns.iter().map(of).collect();
+    let any_of = |names: &[&str]| among(&some, names).into_iter().any(BondColumn::has_any);
+    let says_something = |column: &&BondColumn| match column.name.as_str() {
+        name if SUMS.contains(&name) => !bonds.is_empty(),
+        name if PLASTICS.contains(&name) => any_of(&PLASTICS),
+        name if JOINTS.contains(&name) => any_of(&[FAILED_ELEMENTS]),
+        _ => column.has_any(),
+    };
+    some.iter().filter(says_something).cloned().collect()
+}
+
+/// Whether any bond carries a load that was summed.
+pub(super) fn are_loaded(columns: &[BondColumn]) -> bool {
+    among(columns, &SUMS).into_iter().any(BondColumn::has_any)
+}
+
+/// Whether there is more than loads that were summed.
+pub(super) fn are_more_than_sums(columns: &[BondColumn]) -> bool {
+    columns.iter().any(|column| !SUMS.contains(&&*column.name))
+}
+
+/// Whether a column is of a law that came with the prefix.
+fn is_newer(column: &&BondColumn) -> bool {
+    let name = &&*column.name;
+    ![&SUMS[..], &PLASTICS, &JOINTS]
+        .iter()
+        .any(|names| names.contains(name))
+}
+
+fn find<'a>(columns: &'a [BondColumn], name: &str) -> Option<&'a BondColumn> {
+    columns.iter().find(|column| column.name == name)
+}
+
+/// The columns of these names that there are, in the order of the names.
+fn among<'a>(columns: &'a [BondColumn], names: &[&str]) -> Vec<&'a BondColumn> {
+    (names.iter().filter_map(|name| find(columns, name))).collect()
+}
+
+/// Bytes of summed loads for the hash of a body.
+pub(super) fn hashed_sums(columns: &[BondColumn], bonds: usize) -> Vec<u8> {
+    hashed(columns, &SUMS, bonds)
+}
+
+/// Bytes of all other columns for the hash of a body.
+pub(super) fn hashed_others(columns: &[BondColumn], bonds: usize) -> Vec<u8> {
+    let [turn_a, turn_b, rest @ ..] = PLASTICS;
+    let [edge, failed, slip] = JOINTS;
+    let mut bytes = hashed(columns, &[&rest[..], &[turn_a, turn_b]].concat(), bonds);
+    bytes.extend(hashed(columns, &[edge, slip, failed], bonds));
+    for column in columns.iter().filter(is_newer) {
+        bytes.extend(column.name.bytes());
+        bytes.extend(hashed(columns, &[&column.name], bonds));
+    }
+    bytes
+}
+
+/// Bytes of these columns, bond by bond.
+fn hashed(columns: &[BondColumn], names: &[&str], bonds: usize) -> Vec<u8> {
+    let columns = among(columns, names);
+    let mut bytes = Vec::new();
+    for bond in 0..bonds {
+        for column in &columns {
+            for number in column.of(bond) {
+                match column.is_flags() {
+                    true => bytes.push(u8::from(*number != 0.0)),
+                    false => bytes.extend(number.to_bits().to_le_bytes()),
+                }
+            }
+        }
+    }
+    bytes
+}
+
+/// Checks directions without load: unit vectors.
+pub(super) fn check_directions(directions: &[[f64; 3]]) -> Result<()> {
     for (bond, [x, y, z]) in directions.iter().enumerate() {
         let size = (x * x + y * y + z * z).sqrt();
         let is_unit = (size - 1.0).abs() < LENGTH_OF_UNIT;
@@ -262,41 +244,74 @@ pub(super) fn check(histories: &BondHistories<'_>, lengths_m: &[f64]) -> Result<
             return Err(wrong(bond, "its direction without load is no unit vector"));
         }
     }
-    for (bond, sum) in sums.iter().enumerate() {
-        let mut numbers = sum.shear_n.iter().chain(&sum.moment_n_m);
-        if numbers.any(|number| !number.is_finite()) {
-            return Err(wrong(bond, "its summed load is not finite"));
+    Ok(())
+}
+
+/// Checks the history of bonds of these lengths, m: names, shapes, finite numbers, and the limits
+/// of plastic deformation and of flat joints.
+pub(super) fn check(columns: &[BondColumn], lengths_m: &[f64]) -> Result<()> {
+    let bonds = lengths_m.len();
+    for column in columns {
+        let (name, found, each) = (&column.name, column.values.len(), column.components);
+        if shape(name).is_none() {
+            let problem = format!("bonds have a history '{name}', which no file can hold");
+            let remedy = format!("its name must begin with {PREFIX}");
+            return Err(Diagnostic::input("", problem, remedy));
+        }
+        if found != each * bonds {
+            let problem = format!("{found} values of '{name}' for {bonds} bonds");
+            let remedy = format!("there must be {each} each");
+            return Err(Diagnostic::input("", problem, remedy));
         }
     }
-    for (bond, plastic) in plastics.iter().enumerate() {
-        let angles = [plastic.elongation_m, plastic.twist_rad, plastic.work_j];
-        let [turn_a, turn_b] = plastic.turns_rad;
-        let vectors = [plastic.slip_m, plastic.bend_rad, turn_a, turn_b];
-        let numbers = angles.iter().chain(vectors.as_flattened());
-        if numbers.clone().any(|number| !number.is_finite()) {
+    check_finite(columns, &SUMS, bonds, "its summed load is not finite")?;
+    check_plastics(columns, lengths_m)?;
+    check_joints(columns, bonds)?;
+    columns.iter().filter(is_newer).try_for_each(|column| {
+        let problem = format!("its '{}' is not finite", column.name);
+        check_finite(columns, &[&column.name], bonds, &problem)
+    })
+}
+
+fn check_finite(columns: &[BondColumn], names: &[&str], bonds: usize, problem: &str) -> Result<()> {
+    let columns = among(columns, names);
+    let is_wrong = |bond: &usize| columns.iter().any(|column| !column.is_finite(*bond));
+    (0..bonds)
+        .find(is_wrong)
+        .map_or(Ok(()), |bond| Err(wrong(bond, problem)))
+}
+
+fn check_plastics(columns: &[BondColumn], lengths_m: &[f64]) -> Result<()> {
+    let plastics = among(columns, &PLASTICS);
+    let elongations = find(columns, PLASTIC_ELONGATION);
+    for (bond, length_m) in lengths_m.iter().enumerate() {
+        if !plastics.iter().all(|column| column.is_finite(bond)) {
             return Err(wrong(bond, "its plastic deformation is not finite"));
         }
-        if plastic.elongation_m >= lengths_m[bond] {
-            return Err(wrong(
-                bond,
-                "its plastic elongation is not less than its length",
-            ));
+        let elongation_m = elongations.and_then(|column| column.of(bond).first());
+        if elongation_m.is_some_and(|elongation_m| elongation_m >= length_m) {
+            let problem = "its plastic elongation is not less than its length";
+            return Err(wrong(bond, problem));
         }
     }
-    for (bond, joint) in joints.iter().enumerate() {
-        let [x, y, z] = joint.first_edge;
-        let size = (x * x + y * y + z * z).sqrt();
-        if !joint.failed.is_empty() && !(0.5..2.0).contains(&size) {
-            return Err(wrong(
-                bond,
-                "the edge of its first element is no unit vector",
-            ));
+    Ok(())
+}
+
+fn check_joints(columns: &[BondColumn], bonds: usize) -> Result<()> {
+    let [edges, failed, slips] = JOINTS.map(|name| find(columns, name));
+    for bond in 0..bonds {
+        if let Some(failed) = failed.map(|column| column.of(bond)) {
+            let edge = edges.map_or(&[][..], |column| column.of(bond));
+            let size = edge.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if !(0.5..2.0).contains(&size) {
+                let problem = "the edge of its first element is no unit vector";
+                return Err(wrong(bond, problem));
+            }
+            if failed.iter().all(|failed| *failed != 0.0) {
+                return Err(wrong(bond, "all of its elements have failed"));
+            }
         }
-        if !joint.failed.is_empty() && joint.failed.iter().all(|failed| *failed) {
-            return Err(wrong(bond, "all of its elements have failed"));
-        }
-        let mut slips = joint.slips_m.as_flattened().iter();
-        if slips.any(|number| !number.is_finite()) {
+        if slips.is_some_and(|column| !column.is_finite(bond)) {
             return Err(wrong(bond, "the sliding of its elements is not finite"));
         }
     }

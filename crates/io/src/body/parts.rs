@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::histories::{BondHistories, JointBond, PlasticBond, SummedBond};
+use super::histories::{BondColumn, hashed_others, hashed_sums};
 use crate::diagnostic::Result;
 
 /// Information on the origin of a body. Every field is optional: a body may come from anywhere.
@@ -50,12 +50,9 @@ pub struct Body {
     /// Damage of each bond, from 0 (intact) to below 1 (broken). One per bond, or empty: all are
     /// intact.
     pub bond_damages: Vec<f64>,
-    /// Loads that are summed step by step. One per bond, or empty: none has any.
-    pub bond_sums: Vec<SummedBond>,
-    /// Plastic deformation of each bond. One per bond, or empty: none has yielded.
-    pub bond_plastics: Vec<PlasticBond>,
-    /// Failed elements of each flat joint. One per bond, or empty: no element has failed.
-    pub bond_joints: Vec<JointBond>,
+    /// What the bonds have been through beyond damage: a column with numbers of each bond for each
+    /// part of it. Missing columns are 0.
+    pub bond_histories: Vec<BondColumn>,
     /// Information on its origin.
     pub about: About,
 }
@@ -71,9 +68,7 @@ pub(crate) struct Parts {
     pub(crate) bond_lengths: Option<Vec<f64>>,
     pub(crate) bond_directions: Vec<[f64; 3]>,
     pub(crate) bond_damages: Vec<f64>,
-    pub(crate) bond_sums: Vec<SummedBond>,
-    pub(crate) bond_plastics: Vec<PlasticBond>,
-    pub(crate) bond_joints: Vec<JointBond>,
+    pub(crate) bond_histories: Vec<BondColumn>,
     pub(crate) about: About,
 }
 
@@ -90,14 +85,13 @@ impl Body {
         })
     }
 
-    /// What its bonds have been through.
-    pub(crate) fn histories(&self) -> BondHistories<'_> {
-        BondHistories {
-            directions: &self.bond_directions,
-            sums: &self.bond_sums,
-            plastics: &self.bond_plastics,
-            joints: &self.bond_joints,
-        }
+    /// The numbers of a bond in the column of this name of its history. Empty: there is none.
+    pub fn history_of(&self, name: &str, bond: usize) -> &[f64] {
+        let column = self
+            .bond_histories
+            .iter()
+            .find(|column| column.name == name);
+        column.map_or(&[], |column| column.of(bond))
     }
 
     /// Hash of its numbers (FNV-1a, 64 bit): the same for the same particles and bonds, whatever
@@ -110,36 +104,14 @@ impl Body {
         for number in places.chain(of_bonds) {
             bytes.extend(number.to_bits().to_le_bytes());
         }
-        let of_rest = self.turns_rad.iter().chain(&self.bond_directions).flatten();
-        let sums = self.bond_sums.iter();
-        let sums = sums.flat_map(|sum| sum.shear_n.iter().chain(&sum.moment_n_m));
-        for number in of_rest.chain(sums) {
+        for number in self.turns_rad.iter().chain(&self.bond_directions).flatten() {
             bytes.extend(number.to_bits().to_le_bytes());
         }
+        bytes.extend(hashed_sums(&self.bond_histories, self.bonds.len()));
         for end in self.bonds.iter().flatten() {
             bytes.extend(end.to_le_bytes());
         }
-        for plastic in &self.bond_plastics {
-            let [x, y, z] = plastic.slip_m;
-            let [bx, by, bz] = plastic.bend_rad;
-            let PlasticBond {
-                elongation_m,
-                twist_rad,
-                work_j,
-                turns_rad,
-                ..
-            } = *plastic;
-            let numbers = [elongation_m, x, y, z, twist_rad, bx, by, bz, work_j];
-            for number in numbers.iter().chain(turns_rad.as_flattened()) {
-                bytes.extend(number.to_bits().to_le_bytes());
-            }
-        }
-        for joint in &self.bond_joints {
-            for number in joint.first_edge.iter().chain(joint.slips_m.as_flattened()) {
-                bytes.extend(number.to_bits().to_le_bytes());
-            }
-            bytes.extend(joint.failed.iter().map(|failed| u8::from(*failed)));
-        }
+        bytes.extend(hashed_others(&self.bond_histories, self.bonds.len()));
         crate::hash::fnv1a(&bytes)
     }
 
@@ -156,9 +128,7 @@ impl Body {
             bond_lengths,
             bond_directions,
             bond_damages,
-            bond_sums,
-            bond_plastics,
-            bond_joints,
+            bond_histories,
             about,
         } = parts;
         for bond in &mut bonds {
@@ -193,9 +163,7 @@ impl Body {
             bond_lengths,
             bond_directions,
             bond_damages,
-            bond_sums,
-            bond_plastics,
-            bond_joints,
+            bond_histories,
             about,
         };
         body.check()?;

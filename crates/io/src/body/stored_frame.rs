@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::histories::{DIRECTION, JointBond, PlasticBond, SummedBond};
+use super::histories::{BondColumn, DIRECTION, of_some};
 use super::parts::{About, Body, Parts};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::units::significant;
@@ -79,14 +79,11 @@ pub struct StoredFrame {
     pub bond_directions: Vec<[f64; 3]>,
     /// For each bond, true if it is broken.
     pub broken: Vec<bool>,
-    /// Summed load of each bond, or none: no bond is of the incremental formulation.
-    pub sums: Vec<SummedBond>,
     /// Damage of each bond, or none: no bond can be damaged.
     pub damages: Vec<f64>,
-    /// Plastic deformation of each bond, or none: no bond can yield.
-    pub plastics: Vec<PlasticBond>,
-    /// Elements of each bond, or none: no bond is a flat joint.
-    pub joints: Vec<JointBond>,
+    /// What bonds have been through beyond damage, in columns. Empty: no bond has a law with a
+    /// history.
+    pub histories: Vec<BondColumn>,
 }
 
 /// A fragment of a frame.
@@ -157,24 +154,11 @@ impl StoredFrame {
         let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
         let [turns_rad, bond_directions] = self.form_without_load(id, &members, &bonds)?;
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
-        let has_yielded = |bond: &usize| {
-            let plastic = self.plastics.get(*bond);
-            plastic.is_some_and(|plastic| *plastic != PlasticBond::default())
-        };
-        let has_failed = |bond: &usize| {
-            let joint = self.joints.get(*bond);
-            joint.is_some_and(|joint| joint.failed.contains(&true))
-        };
         Body::from_parts(Parts {
             positions: members.iter().map(|&i| self.positions[i]).collect(),
             radii: members.iter().map(|&i| self.radii[i]).collect(),
             turns_rad,
             bond_directions,
-            bond_sums: if self.sums.is_empty() {
-                Vec::new()
-            } else {
-                bonds.iter().map(|&bond| self.sums[bond]).collect()
-            },
             bonds: bonds
                 .iter()
                 .map(|&bond| self.bonds[bond].map(|end| number_of[end as usize]))
@@ -186,19 +170,7 @@ impl StoredFrame {
             } else {
                 Vec::new()
             },
-            bond_plastics: if bonds.iter().any(has_yielded) {
-                bonds.iter().map(|&bond| self.plastics[bond]).collect()
-            } else {
-                Vec::new()
-            },
-            bond_joints: if bonds.iter().any(has_failed) {
-                bonds
-                    .iter()
-                    .map(|&bond| self.joints[bond].clone())
-                    .collect()
-            } else {
-                Vec::new()
-            },
+            bond_histories: of_some(&self.histories, &bonds),
             about: About {
                 particle_density_kg_m3: common_density(
                     members.iter().map(|&i| self.densities_kg_m3[i]),

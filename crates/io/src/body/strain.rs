@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::histories::SummedBond;
+use super::histories::are_loaded;
 use super::parts::Body;
 
 /// Largest strain that counts as rounding: change of length over length, or angle, rad.
@@ -17,8 +17,7 @@ impl Body {
 
     /// Whether any bond is bent, twisted or sheared, beyond its plastic deformation.
     pub(super) fn is_sheared(&self) -> bool {
-        let is_loaded = |sum: &SummedBond| *sum != SummedBond::default();
-        if self.bond_sums.iter().any(is_loaded) {
+        if are_loaded(&self.bond_histories) {
             return true;
         }
         let mut bonds = self.bonds.iter().zip(&self.bond_directions);

@@ -2,35 +2,29 @@
 //!
 //! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`
 //! and, of a strained body, `rotation_rad`, cell data `bond_radius_m`, `initial_length_m` and, if
-//! bonds are damaged, `damage`, or what [`super::histories`] names if they are sheared or bent,
-//! have
-//! yielded or are flat joints with failed elements; field data:
-//! `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
+//! bonds are damaged, `damage`, `initial_direction` if they are sheared or bent, and the columns of
+//! [`super::histories`] of what they have been through; field data: `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
 //! encoding see [`crate::vtk`].
 
-mod contents;
-mod decode;
-mod guard;
-mod header;
 mod names;
-mod numbers;
 mod read;
-mod walls;
+mod shapes;
+mod stored;
 
 pub use names::FORMAT_VERSION;
 pub use read::read;
-pub(crate) use read::{read_frame, read_particles, read_walls};
+pub(crate) use stored::{read_frame, read_particles, read_walls};
 
 use std::io::{self, Write};
 
 use names::{
-    BOND_LENGTH, BOND_RADIUS, BOND_RANGE, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM,
-    RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
+    BOND_RANGE, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, SEED, SHAPE_VOLUME, SOURCE,
+    SOURCE_HASH, VERSION, WARNINGS,
 };
 
-use super::histories::with_arrays;
+use super::histories::{BondColumn, DIRECTION};
 use super::parts::{About, Body};
-use super::stored_frame::{DAMAGE, TURN};
+use super::stored_frame::{BOND_LENGTH, BOND_RADIUS, DAMAGE, RADIUS, TURN};
 use crate::vtk::{
     Cells, NamedArray, PolyData, Values, exact, write_number, write_text, write_texts,
 };
@@ -61,17 +55,22 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
             values: Values::Vectors(&turn),
         });
     }
-    with_arrays(&body.histories(), |histories| {
-        let of_bonds: Vec<NamedArray<'_>> = of_bonds.iter().chain(histories).copied().collect();
-        PolyData {
-            points: body.positions.len(),
-            place: Values::Vectors(&|i| body.positions[i]),
-            cells: Cells::Lines(body.bonds.len(), &|bond| body.bonds[bond]),
-            point_data: &of_particles,
-            cell_data: &of_bonds,
-        }
-        .write(out, |out| write_fields(&body.about, out))
-    })
+    let direction = |bond: usize| body.bond_directions[bond];
+    if !body.bond_directions.is_empty() {
+        of_bonds.push(NamedArray {
+            name: DIRECTION,
+            values: Values::Vectors(&direction),
+        });
+    }
+    of_bonds.extend(body.bond_histories.iter().map(BondColumn::array));
+    PolyData {
+        points: body.positions.len(),
+        place: Values::Vectors(&|i| body.positions[i]),
+        cells: Cells::Lines(body.bonds.len(), &|bond| body.bonds[bond]),
+        point_data: &of_particles,
+        cell_data: &of_bonds,
+    }
+    .write(out, |out| write_fields(&body.about, out))
 }
 
 fn write_fields(about: &About, out: &mut dyn Write) -> io::Result<()> {

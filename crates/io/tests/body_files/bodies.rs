@@ -15,9 +15,7 @@ pub(crate) fn triangle() -> Body {
         bond_damages: Vec::new(),
         turns_rad: Vec::new(),
         bond_directions: Vec::new(),
-        bond_sums: Vec::new(),
-        bond_plastics: Vec::new(),
-        bond_joints: Vec::new(),
+        bond_histories: Vec::new(),
         about: About {
             program: Some("dem-pack 0.1.0".to_owned()),
             source: Some("Käse & \"Kuchen\" <1>.stl".to_owned()),
@@ -101,9 +99,7 @@ fn body_of(
                     bond_damages: Vec::new(),
                     turns_rad: Vec::new(),
                     bond_directions: Vec::new(),
-                    bond_sums: Vec::new(),
-                    bond_plastics: Vec::new(),
-                    bond_joints: Vec::new(),
+                    bond_histories: Vec::new(),
                     about: about.clone(),
                 })
             },

@@ -86,7 +86,7 @@ impl Spheres {
             bodies: counts(&wanted[3]),
             speeds_m_s: vectors(&wanted[4]).into_iter().map(speed).collect(),
             masses_kg: of(&wanted[5]),
-            body_names: arrays.texts("body_names").to_vec(),
+            body_names: arrays.body_names.clone(),
             can_break: arrays.get(&wanted[2]).is_some(),
             ..Self::default()
         };

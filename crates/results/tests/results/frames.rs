@@ -197,7 +197,7 @@ fn all_arrays_are_read_with_their_kinds() {
         ("CellData/state", 1, true),
         ("Lines/connectivity", 1, true),
         ("Lines/offsets", 1, true),
-        ("PointData/body &quot;a&quot; &amp; &lt;b&gt;", 1, true),
+        ("PointData/body \"a\" & <b>", 1, true),
         ("PointData/cluster", 1, true),
         ("PointData/radius_m", 1, false),
         ("PointData/velocity_m_s", 3, false),

@@ -1,11 +1,11 @@
 //! A frame read back: its fragments, and each of them as a body that can be written to files.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use dem_io::body::histories::with_arrays;
-use dem_io::body::{BondHistories, JointBond, PlasticBond, StoredFrame, SummedBond, read_frame};
+use dem_io::body::{BondColumn, StoredFrame, read_frame};
 use dem_io::body::{read_body, write_body};
+use dem_io::hash::fnv1a_of_parts;
 use dem_results::{Frame, NamedArray, Values, write_frame};
 use proptest::prelude::*;
 use tempfile::{TempDir, tempdir};
@@ -38,11 +38,9 @@ fn stored() -> StoredFrame {
             [0.0, 1.0, 0.0],
             [0.8, 0.0, -0.6],
         ],
-        sums: Vec::new(),
+        histories: Vec::new(),
         broken: vec![false, true, false, false],
         damages: Vec::new(),
-        plastics: Vec::new(),
-        joints: Vec::new(),
     }
 }
 
@@ -77,29 +75,25 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     if frame.turns_rad.is_some() {
         of_particles.push(array("rotation_rad", Values::Vectors(&turn)));
     }
+    let direction = |bond: usize| frame.bond_directions[bond];
+    if !frame.bond_directions.is_empty() {
+        of_bonds.push(array("initial_direction", Values::Vectors(&direction)));
+    }
+    of_bonds.extend(frame.histories.iter().map(BondColumn::array));
     of_particles.retain(|array| array.name != without);
     of_bonds.retain(|array| array.name != without);
     let mut bytes = Vec::new();
-    let histories = BondHistories {
-        directions: &frame.bond_directions,
-        sums: &frame.sums,
-        plastics: &frame.plastics,
-        joints: &frame.joints,
+    let frame = Frame {
+        time_s: frame.time_s,
+        body_names: &["a\"b", "K\u{f6}rper"],
+        particles: frame.positions.len(),
+        position_m: &|i| frame.positions[i],
+        particle_arrays: &of_particles,
+        bonds: frame.bonds.len(),
+        ends: &|bond| frame.bonds[bond],
+        bond_arrays: &of_bonds,
     };
-    with_arrays(&histories, |histories| {
-        let of_bonds: Vec<NamedArray<'_>> = of_bonds.iter().chain(histories).copied().collect();
-        let frame = Frame {
-            time_s: frame.time_s,
-            body_names: &["a\"b", "K\u{f6}rper"],
-            particles: frame.positions.len(),
-            position_m: &|i| frame.positions[i],
-            particle_arrays: &of_particles,
-            bonds: frame.bonds.len(),
-            ends: &|bond| frame.bonds[bond],
-            bond_arrays: &of_bonds,
-        };
-        write_frame(&frame, &mut bytes).unwrap();
-    });
+    write_frame(&frame, &mut bytes).unwrap();
     fs::write(&path, bytes).unwrap();
     (folder, path)
 }
@@ -170,22 +164,55 @@ fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
     }
 }
 
-/// A bond that has yielded in every way, by this much.
-fn plastic(much: f64) -> PlasticBond {
-    PlasticBond {
-        elongation_m: 1e-5 * much,
-        slip_m: [0.0, 2e-5 * much, -3e-5 * much],
-        twist_rad: -0.1 * much,
-        bend_rad: [0.0, 0.2 * much, 0.3 * much],
-        work_j: much,
-        turns_rad: [[0.0, 0.01 * much, 0.0], [0.02 * much, 0.0, 0.0]],
-    }
+/// A column of these numbers of the first bond times the amount of each bond.
+fn column(name: &str, one: &[f64], amounts: &[f64]) -> BondColumn {
+    let of_bond = |much: &f64| {
+        one.iter()
+            .map(|number| number * *much)
+            .collect::<Vec<f64>>()
+    };
+    BondColumn::new(name, one.len(), amounts.iter().flat_map(of_bond).collect())
+}
+
+/// Bonds that have yielded in every way, by these amounts.
+fn plastics(amounts: &[f64]) -> Vec<BondColumn> {
+    [
+        ("plastic_turn_a_rad", &[0.0, 0.01, 0.0][..]),
+        ("plastic_turn_b_rad", &[0.02, 0.0, 0.0]),
+        ("plastic_elongation_m", &[1e-5]),
+        ("plastic_slip_m", &[0.0, 2e-5, -3e-5]),
+        ("plastic_twist_rad", &[-0.1]),
+        ("plastic_bend_rad", &[0.0, 0.2, 0.3]),
+        ("plastic_work_j", &[1.0]),
+    ]
+    .map(|(name, one)| column(name, one, amounts))
+    .to_vec()
+}
+
+/// Loads that were summed, of these amounts.
+fn sums(amounts: &[f64]) -> Vec<BondColumn> {
+    vec![
+        column("summed_shear_n", &[1.0, 0.0, -1.0], amounts),
+        column("summed_moment_n_m", &[0.0, 0.1, 0.0], amounts),
+    ]
+}
+
+/// Flat joints of three elements each, of which these have failed, 1, and slid.
+fn joints(failed: &[[f64; 3]]) -> Vec<BondColumn> {
+    let slips = failed.as_flattened().iter();
+    let slips = slips.flat_map(|failed| [0.0, 0.0, 1e-6 * failed]);
+    let edge = [0.0, 0.6, 0.8];
+    vec![
+        column("first_element_edge", &edge, &vec![1.0; failed.len()]),
+        BondColumn::new("failed_elements", 3, failed.as_flattened().to_vec()),
+        BondColumn::new("element_slip_m", 9, slips.collect()),
+    ]
 }
 
 #[test]
 fn plastic_deformation_goes_with_the_bonds() {
     let yielded = StoredFrame {
-        plastics: [0.0, 1.0, 0.0, 2.0].map(plastic).to_vec(),
+        histories: plastics(&[0.0, 1.0, 0.0, 2.0]),
         ..stored()
     };
     let (folder, path) = written(&yielded, "");
@@ -194,13 +221,13 @@ fn plastic_deformation_goes_with_the_bonds() {
     // Where no bond has yielded, nothing is said of it: the one that has is broken.
     assert_eq!(frame.body(7).unwrap(), stored().body(7).unwrap());
     let body = frame.body(3).unwrap();
-    assert_eq!(body.bond_plastics, [plastic(2.0)]);
+    assert_eq!(body.bond_histories, plastics(&[2.0]));
     assert_ne!(body.hash(), stored().body(3).unwrap().hash());
     let file = folder.path().join("body.vtp");
     write_body(&body, &file).unwrap();
     assert_eq!(read_body(&file).unwrap(), body);
     let mut longer = body;
-    longer.bond_plastics[0].elongation_m = 2.1e-3;
+    longer.bond_histories[2].values[0] = 2.1e-3;
     let error = longer.check().unwrap_err().to_string();
     assert!(
         error.starts_with("bond 0: its plastic elongation is not less than its length"),
@@ -210,41 +237,107 @@ fn plastic_deformation_goes_with_the_bonds() {
 
 #[test]
 fn summed_loads_go_with_the_bonds() {
-    let sum = |much: f64| SummedBond {
-        shear_n: [much, 0.0, -much],
-        moment_n_m: [0.0, 0.1 * much, 0.0],
-    };
     let summed = StoredFrame {
-        sums: [0.0, 1.0, 2.0, 3.0].map(sum).to_vec(),
+        histories: sums(&[0.0, 1.0, 2.0, 3.0]),
         ..stored()
     };
     let (folder, path) = written(&summed, "");
     let frame = read_frame(&path).unwrap();
     assert_eq!(frame, summed);
     let body = frame.body(3).unwrap();
-    assert_eq!(body.bond_sums, [sum(3.0)]);
+    assert_eq!(body.bond_histories, sums(&[3.0]));
     assert_ne!(body.hash(), stored().body(3).unwrap().hash());
     let file = folder.path().join("body.vtp");
     write_body(&body, &file).unwrap();
     assert_eq!(read_body(&file).unwrap(), body);
 }
 
+/// The columns of a law that is not known here go with the bonds as well.
+#[test]
+fn any_history_goes_with_the_bonds() {
+    let histories = |amounts: &[f64]| {
+        vec![
+            column("history_strain", &[0.25], amounts),
+            column(
+                "history_stress_pa",
+                &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+                amounts,
+            ),
+        ]
+    };
+    let strained = StoredFrame {
+        histories: histories(&[0.0, 1.0, 0.0, 2.0]),
+        ..stored()
+    };
+    let (folder, path) = written(&strained, "");
+    let frame = read_frame(&path).unwrap();
+    assert_eq!(frame, strained);
+    assert_eq!(frame.body(7).unwrap(), stored().body(7).unwrap());
+    let body = frame.body(3).unwrap();
+    assert_eq!(body.bond_histories, histories(&[2.0]));
+    let mut other = body.clone();
+    other.bond_histories[0].values[0] = 0.75;
+    assert_ne!(body.hash(), other.hash());
+    assert_ne!(body.hash(), stored().body(3).unwrap().hash());
+    let file = folder.path().join("body.vtp");
+    write_body(&body, &file).unwrap();
+    assert_eq!(read_body(&file).unwrap(), body);
+    other.bond_histories[1].values[5] = f64::NAN;
+    let error = other.check().unwrap_err().to_string();
+    assert!(
+        error.starts_with("bond 0: its 'history_stress_pa' is not finite"),
+        "{error}"
+    );
+    other.bond_histories[1].values.pop();
+    let error = other.check().unwrap_err().to_string();
+    assert!(
+        error.starts_with("5 values of 'history_stress_pa' for 1 bonds"),
+        "{error}"
+    );
+    other.bond_histories[1].name = "stress_pa".to_owned();
+    let error = other.check().unwrap_err().to_string();
+    assert!(
+        error.starts_with("bonds have a history 'stress_pa', which no file can hold"),
+        "{error}"
+    );
+}
+
+/// Hashes of bodies with a history, and the bytes of their files and frames, which earlier versions
+/// wrote.
+#[test]
+fn hashes_and_files_of_histories_stay() {
+    let hash_of_file = |path: &Path| fnv1a_of_parts(&[&fs::read(path).unwrap()]);
+    for (histories, wanted) in [
+        (
+            sums(&[0.0, 1.0, 2.0, 3.0]),
+            [0x91f06e98516d38bc, 0x8761712f0040f0b2, 0xc59f96c1f3443de0],
+        ),
+        (
+            plastics(&[0.0, 1.0, 0.0, 2.0]),
+            [0x550dd9fb5787f11d, 0xe1a26022b10bc008, 0x1817d1629bbbe665],
+        ),
+        (
+            joints(&[[0.0; 3], [1.0; 3], [0.0; 3], [1.0, 0.0, 1.0]]),
+            [0x6e75dbc10c3ebf5e, 0xb44e0ad81fa7c95a, 0x0d437dd9f7bbb6a0],
+        ),
+    ] {
+        let frame = StoredFrame {
+            histories,
+            ..stored()
+        };
+        let (folder, path) = written(&frame, "");
+        let body = read_frame(&path).unwrap().body(3).unwrap();
+        let file = folder.path().join("body.vtp");
+        write_body(&body, &file).unwrap();
+        let found = [body.hash(), hash_of_file(&path), hash_of_file(&file)];
+        assert_eq!(found, wanted);
+    }
+}
+
 #[test]
 fn failed_elements_go_with_the_bonds() {
-    let joint = |failed: [bool; 3]| JointBond {
-        first_edge: [0.0, 0.6, 0.8],
-        failed: failed.to_vec(),
-        slips_m: failed
-            .map(|failed| [0.0, 0.0, if failed { 1e-6 } else { 0.0 }])
-            .to_vec(),
-    };
     let cracked = StoredFrame {
-        joints: vec![
-            joint([false; 3]),
-            joint([true; 3]),
-            joint([false; 3]),
-            joint([true, false, true]),
-        ],
+        histories: joints(&[[0.0; 3], [1.0; 3], [0.0; 3], [1.0, 0.0, 1.0]]),
         ..stored()
     };
     let (folder, path) = written(&cracked, "");
@@ -252,22 +345,20 @@ fn failed_elements_go_with_the_bonds() {
     assert_eq!(frame, cracked);
     assert_eq!(frame.body(7).unwrap(), stored().body(7).unwrap());
     let body = frame.body(3).unwrap();
-    assert_eq!(body.bond_joints, [joint([true, false, true])]);
+    assert_eq!(body.bond_histories, joints(&[[1.0, 0.0, 1.0]]));
     assert_ne!(body.hash(), stored().body(3).unwrap().hash());
     let file = folder.path().join("body.vtp");
     write_body(&body, &file).unwrap();
     assert_eq!(read_body(&file).unwrap(), body);
     let mut bad = body.clone();
-    bad.bond_joints[0].failed = vec![true; 3];
+    bad.bond_histories = joints(&[[1.0; 3]]);
     let error = bad.check().unwrap_err().to_string();
     assert!(
         error.starts_with("bond 0: all of its elements have failed"),
         "{error}"
     );
-    bad.bond_joints[0] = JointBond {
-        first_edge: [0.0; 3],
-        ..joint([true, false, false])
-    };
+    bad.bond_histories = joints(&[[1.0, 0.0, 0.0]]);
+    bad.bond_histories[0].values = vec![0.0; 3];
     let error = bad.check().unwrap_err().to_string();
     assert!(
         error.starts_with("bond 0: the edge of its first element is no unit vector"),
@@ -396,15 +487,13 @@ proptest! {
             turns_rad: Some(vec![[0.0; 3]; clusters.len()]),
             bond_directions: vec![[1.0, 0.0, 0.0]; bonds.len()],
             rigid: Vec::new(),
-            sums: Vec::new(),
+            histories: Vec::new(),
             radii: (0..count).map(|i| 0.1 + 0.01 * f64::from(i)).collect(),
             densities_kg_m3: vec![1000.0; clusters.len()],
             bond_radii: (0..bonds.len()).map(|bond| 0.1 + 0.001 * bond as f64).collect(),
             bond_lengths: (0..bonds.len()).map(|bond| 1.0 + 0.001 * bond as f64).collect(),
             broken: (0..bonds.len()).map(|bond| !whole[bond]).collect(),
             damages: Vec::new(),
-            plastics: Vec::new(),
-            joints: Vec::new(),
             bonds,
             clusters,
         };

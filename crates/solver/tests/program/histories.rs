@@ -3,7 +3,7 @@
 
 use dem_engine::State;
 use dem_io::Body;
-use dem_io::body::{read_body, write_body};
+use dem_io::body::{BondColumn, read_body, write_body};
 use dem_plan::plan;
 use dem_scene::{read_bodies, scene_from_text};
 use nalgebra::Vector3;
@@ -91,17 +91,14 @@ fn a_bond_stays_as_hard_as_it_has_become() {
     let found_n = measure(&before, "pull");
     assert!((found_n / kept_n - 1.0).abs() < 1e-3, "{found_n} {kept_n}");
     let body = read_body(&bench.path("left.vtp")).unwrap();
-    let plastic = body.bond_plastics[0];
+    let plastic_m = body.history_of("plastic_elongation_m", 0)[0];
     // (1 - h) of what exceeds the elastic limit, h of the slope.
     let wanted_m = (1.0 - HARDENING) * 3.0 * yields_m;
-    assert!(
-        (plastic.elongation_m / wanted_m - 1.0).abs() < 2e-3,
-        "{plastic:?}"
-    );
+    assert!((plastic_m / wanted_m - 1.0).abs() < 2e-3, "{plastic_m}");
     let stress_free_m = LENGTH_M + wanted_m;
     assert!((body.bond_lengths[0] / stress_free_m - 1.0).abs() < 1e-5);
     let mut forgetful = body.clone();
-    forgetful.bond_plastics.clear();
+    forgetful.bond_histories.clear();
     let again = "file = \"left.vtp\"";
     for further in [2.0, -3.0] {
         let path = format!("[0, 0], [5e-3, 4], [1e-2, 3], [1.8e-2, {}]", 3.0 + further);
@@ -168,12 +165,12 @@ fn plastic_bending_turns_with_the_body() {
         &pair(INLINE, ELASTIC_PLASTIC, moved),
         Some("left.vtp"),
     );
-    let stored = read_body(&bench.path("left.vtp")).unwrap().bond_plastics[0];
-    assert!(
-        stored.bend_rad[2] > 1e-2 && stored.work_j > 0.0,
-        "{stored:?}"
-    );
-    assert!(stored.slip_m[1].abs() > 1e-7, "{stored:?}");
+    let body = read_body(&bench.path("left.vtp")).unwrap();
+    let stored = |name: &str| body.history_of(name, 0);
+    let [bend_rad, slip_m] = ["plastic_bend_rad", "plastic_slip_m"].map(stored);
+    let work_j = stored("plastic_work_j")[0];
+    assert!(bend_rad[2] > 1e-2 && work_j > 0.0, "{bend_rad:?} {work_j}");
+    assert!(slip_m[1].abs() > 1e-7, "{slip_m:?}");
     let fixed = "fixed = true";
     for (axis, degrees) in TURNS {
         let state = state(
@@ -186,18 +183,15 @@ fn plastic_bending_turns_with_the_body() {
         let along = Vector3::from(state.bonds.blocks[0].direction.map(|column| column[0]));
         let frame = frame(&state);
         let sign = (rotation * Vector3::x()).dot(&(frame * along)).signum();
-        for (found, stored) in [
-            (plastic.bend_rad, stored.bend_rad),
-            (plastic.slip_m, stored.slip_m),
-        ] {
-            let wanted = sign * (rotation * Vector3::from(stored));
+        for (found, stored) in [(plastic.bend_rad, bend_rad), (plastic.slip_m, slip_m)] {
+            let wanted = sign * (rotation * Vector3::from_column_slice(stored));
             let off = (frame * Vector3::from(found) - wanted).norm() / wanted.norm();
             assert!(
                 off < 1e-12,
                 "{degrees} degrees about {axis}: {found:?} {wanted:?}"
             );
         }
-        assert_eq!(plastic.work_j, stored.work_j);
+        assert_eq!(plastic.work_j, work_j);
     }
     // Bent on, it is harder than bent back: the difference is twice the back stress, as far as the
     // bond yields both ways.
@@ -244,8 +238,8 @@ fn cracked(bench: &Bench) -> Body {
 fn failed_elements_turn_with_the_body() {
     let bench = Bench::new();
     let body = cracked(&bench);
-    let failed = &body.bond_joints[0].failed;
-    let count = failed.iter().filter(|failed| **failed).count();
+    let failed = body.history_of("failed_elements", 0);
+    let count = failed.iter().filter(|failed| **failed == 1.0).count();
     assert!(failed.len() == 18 && (2..16).contains(&count), "{failed:?}");
     let mut first: Option<(Vector3<f64>, f64)> = None;
     for (axis, degrees) in TURNS {
@@ -299,7 +293,7 @@ fn a_joint_stays_as_cracked_as_it_is() {
     let cracked = pulled(&body);
     assert!((elements("first") - failed).abs() < 1e-12);
     let mut mended = body.clone();
-    mended.bond_joints.clear();
+    mended.bond_histories.clear();
     let whole = pulled(&mended);
     for results in [&cracked, &whole] {
         assert_eq!(results["broken_bonds"], 1);
@@ -340,6 +334,14 @@ fn bonds_with_a_history_need_a_kind_that_has_one() {
     let said = refused("failure = { tensile_strength = 1e5 }");
     assert!(
         said.contains("bond 0: it has yielded, and its kind of bonds has no plasticity; add a table plasticity to it"),
+        "{said}"
+    );
+    let mut body = read_body(&bench.path("left.vtp")).unwrap();
+    body.bond_histories = vec![BondColumn::new("history_other", 1, vec![1.0])];
+    write_body(&body, &bench.path("left.vtp")).unwrap();
+    let said = refused(ELASTIC_PLASTIC);
+    assert!(
+        said.contains("no kind of bonds has the history 'history_other'"),
         "{said}"
     );
     // Another format would lose it.

@@ -3,9 +3,6 @@
 /// Version of this layout. Files of a later version are refused.
 pub const FORMAT_VERSION: u64 = 1;
 
-pub(super) const RADIUS: &str = "radius_m";
-pub(super) const BOND_RADIUS: &str = "bond_radius_m";
-pub(super) const BOND_LENGTH: &str = "initial_length_m";
 pub(super) const VERSION: &str = "body_format_version";
 pub(super) const LENGTH_UNIT: &str = "length_unit";
 pub(super) const METRE: &str = "m";

@@ -1,21 +1,17 @@
-//! A body from a .vtp file, in one pass over a file or a pipe.
+//! The arrays of a .vtp file as a body.
 
-use std::io::{BufRead, Read};
+use std::io::BufRead;
 
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
-
-use super::contents::Contents;
-use super::decode::{
-    DAMAGED, Scalar, Values, array_bytes, base64_array, skip, truncated, unreadable,
+use super::names::{
+    BOND_RANGE, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, SEED,
+    SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
-use super::guard::Guarded;
-use super::header::{Array, Counts, Encoding, Format, Layout, Role, attribute, damaged, not_vtp};
-use crate::body::parts::Body;
-use crate::body::stored_frame::StoredFrame;
-use crate::body::stored_particles::StoredParticles;
-use crate::body::stored_walls::StoredWalls;
+use super::shapes::{BOND_ENDS, BOND_OFFSETS, POSITIONS, of_body, of_cells, of_points};
+use crate::body::histories::{self, DIRECTION};
+use crate::body::parts::{About, Body, Parts};
+use crate::body::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, RADIUS, TURN};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::vtp::{Arrays, DAMAGED, Reader, check_count};
 
 /// Reads a body from a .vtp file, which ends with the input.
 ///
@@ -27,302 +23,117 @@ use crate::diagnostic::{Diagnostic, Result};
 /// # Errors
 /// Damaged or cut off, a later version, compressed, wrong counts, or not a body by [`Body::check`].
 pub fn read(input: &mut dyn BufRead) -> Result<Body> {
-    contents(input, Layout::Body)?.into_body()
-}
-
-/// Reads the fragments of a frame of a run.
-pub(crate) fn read_frame(input: &mut dyn BufRead) -> Result<StoredFrame> {
-    contents(input, Layout::Frame)?.into_frame()
-}
-
-/// Reads the particles and bonds of a frame of any run.
-pub(crate) fn read_particles(input: &mut dyn BufRead) -> Result<StoredParticles> {
-    contents(input, Layout::Frame)?.into_particles()
-}
-
-/// Reads the walls of a frame of a run.
-pub(crate) fn read_walls(input: &mut dyn BufRead) -> Result<StoredWalls> {
-    contents(input, Layout::Walls)?.into_walls()
-}
-
-fn contents(input: &mut dyn BufRead, layout: Layout) -> Result<Contents> {
-    let mut file = File {
-        layout,
-        ..File::default()
+    let file = Reader::open(input, &of_body)?;
+    // A later version may have other arrays; of other programs, fields may follow the header.
+    check_version(file.arrays())?;
+    let mut arrays = file.read()?;
+    check_version(&arrays)?;
+    check_unit(&arrays)?;
+    let about = about(&arrays)?;
+    let parts = particles_and_bonds(&mut arrays)?;
+    if arrays.take(&of_cells(BROKEN)).is_some() {
+        return Err(Diagnostic::input(
+            "",
+            "this is a frame of a run, whose bonds may be broken",
+            "write one of its fragments as a body: dem-run fragment RESULTS --largest -o piece.vtp",
+        ));
+    }
+    let Some(radii) = arrays.take(&of_points(RADIUS)) else {
+        let known = match arrays.point_data() {
+            [] => "there are no point data".to_owned(),
+            names => format!("the point data are '{}'", names.join("', '")),
+        };
+        return Err(Diagnostic::input(
+            "",
+            format!("the radii of the particles are missing: {known}"),
+            format!("name the point data that hold them '{RADIUS}'"),
+        ));
     };
-    let mut xml = Reader::from_reader(Guarded::new(input));
-    match read_xml(&mut xml, &mut file)? {
-        Appended::None => {}
-        Appended::Raw => read_raw(xml.into_inner().into_input(), &mut file)?,
-        Appended::Base64 => read_base64(xml.into_inner().into_input(), &mut file)?,
-    }
-    Ok(file.contents)
+    Body::from_parts(Parts {
+        radii,
+        about,
+        ..parts
+    })
 }
 
-/// The data after the XML header.
-enum Appended {
-    None,
-    Raw,
-    Base64,
+fn about(arrays: &Arrays) -> Result<About> {
+    Ok(About {
+        program: arrays.text(PROGRAM)?,
+        source: arrays.text(SOURCE)?,
+        source_hash: arrays.whole(SOURCE_HASH)?,
+        shape_volume_m3: arrays.float(SHAPE_VOLUME),
+        particle_density_kg_m3: arrays.float(PARTICLE_DENSITY),
+        overlap: arrays.float(OVERLAP),
+        bond_range: arrays.float(BOND_RANGE),
+        seed: arrays.whole(SEED)?,
+        warnings: arrays.texts(WARNINGS)?,
+    })
 }
 
-/// The contents read so far.
-#[derive(Default)]
-struct File {
-    layout: Layout,
-    encoding: Option<Encoding>,
-    contents: Contents,
-    /// Arrays whose values follow later, with their offset in the appended data.
-    appended: Vec<(u64, Array)>,
+/// What bodies and frames have in common, but for the radii.
+pub(super) fn particles_and_bonds(arrays: &mut Arrays) -> Result<Parts> {
+    let counts = arrays.counts();
+    let ends = arrays.take_indices(BOND_ENDS)?.unwrap_or_default();
+    let (bonds, positions) = (ends.as_chunks().0.to_vec(), arrays.take_vectors(POSITIONS));
+    check_count(positions.len() as u64, counts.points.into(), "points")?;
+    check_count(bonds.len() as u64, counts.lines.into(), "lines")?;
+    check_line_ends(arrays, counts.lines)?;
+    Ok(Parts {
+        positions,
+        turns_rad: arrays.take_vectors(&of_points(TURN)),
+        bond_radii: arrays.take(&of_cells(BOND_RADIUS)),
+        bond_lengths: arrays.take(&of_cells(BOND_LENGTH)),
+        bond_directions: arrays.take_vectors(&of_cells(DIRECTION)),
+        bond_damages: arrays.take(&of_cells(DAMAGE)).unwrap_or_default(),
+        bond_histories: histories::take(arrays, bonds.len()),
+        bonds,
+        ..Parts::default()
+    })
 }
 
-/// Reads the XML up to the appended data, or to its end if there are none.
-fn read_xml(xml: &mut Reader<Guarded<'_>>, file: &mut File) -> Result<Appended> {
-    let mut buffer = Vec::new();
-    let mut open: Vec<String> = Vec::new();
-    // The open array, and its text so far.
-    let mut array: Option<(Array, String)> = None;
-    loop {
-        buffer.clear();
-        let event = xml
-            .read_event_into(&mut buffer)
-            .map_err(|error| match &error {
-                quick_xml::Error::Io(error) => unreadable(error),
-                _ if file.encoding.is_none() => not_vtp(),
-                quick_xml::Error::Syntax(_) => truncated(),
-                error => damaged(error),
-            })?;
-        match event {
-            Event::Start(element) if element.name().as_ref() == "AppendedData" => {
-                return match attribute(&element, "encoding")?.as_deref() {
-                    Some("raw") => Ok(Appended::Raw),
-                    Some("base64") => Ok(Appended::Base64),
-                    _ => Err(Diagnostic::input(
-                        "",
-                        "the appended data have an unknown encoding",
-                        DAMAGED,
-                    )),
-                };
-            }
-            Event::Start(element) => {
-                let declared = file.element(&element, open.last())?;
-                xml.get_mut().begin();
-                if let Some(declared) = declared {
-                    let most = file.contents.most_values(declared.role);
-                    let is_decimal = declared.format == Format::Ascii;
-                    xml.get_mut().expect_values(most, is_decimal);
-                    array = Some((declared, String::new()));
-                }
-                open.push(element.name().as_ref().to_owned());
-            }
-            Event::Empty(element) => {
-                if let Some(declared) = file.element(&element, open.last())? {
-                    file.declared(declared, "")?;
-                }
-            }
-            Event::Text(text) => {
-                if let Some((_, values)) = &mut array
-                    && open.last().is_some_and(|name| is_array(name))
-                {
-                    values.push_str(&text);
-                }
-            }
-            Event::End(element) => {
-                open.pop();
-                if is_array(element.name().as_ref())
-                    && let Some((declared, values)) = array.take()
-                {
-                    file.declared(declared, &values)?;
-                }
-                if open.is_empty() {
-                    return Ok(Appended::None);
-                }
-            }
-            Event::Eof => {
-                return Err(if file.encoding.is_some() {
-                    truncated()
-                } else {
-                    not_vtp()
-                });
-            }
-            _ => {}
-        }
-        let in_values = array.is_some() && open.last().is_some_and(|name| is_array(name));
-        xml.get_mut().set_in_values(in_values);
-    }
-}
-
-fn is_array(element: &str) -> bool {
-    matches!(element, "DataArray" | "Array")
-}
-
-impl File {
-    /// Processes an element that begins inside `section`. If it is an array, it is returned.
-    fn element(
-        &mut self,
-        element: &BytesStart<'_>,
-        section: Option<&String>,
-    ) -> Result<Option<Array>> {
-        let name = element.name();
-        let name = name.as_ref();
-        if name == "VTKFile" {
-            self.encoding = Some(Encoding::declared(element)?);
-        }
-        let encoding = self.encoding.ok_or_else(not_vtp)?;
-        if name == "Piece" {
-            self.contents.set_counts(Counts::declared(element)?)?;
-        }
-        if !is_array(name) {
-            return Ok(None);
-        }
-        let section = section.map_or("", String::as_str);
-        let array = Array::declared(element, section, self.layout)?;
-        encoding.check(&array)?;
-        if section == "PointData" {
-            self.contents.add_point_data(&array.name);
-        }
-        Ok(Some(array))
-    }
-
-    /// Processes an array whose values are `text`, or records where they will follow.
-    fn declared(&mut self, array: Array, text: &str) -> Result<()> {
-        match array.format {
-            Format::Ascii => self.contents.fill(&array, Values::Text(text)),
-            Format::Base64 => self.fill_base64(&array, text.as_bytes()),
-            Format::Appended(offset) => {
-                self.appended.push((offset, array));
-                Ok(())
-            }
-        }
-    }
-
-    fn fill_base64(&mut self, array: &Array, text: &[u8]) -> Result<()> {
-        if array.role == Role::Other {
-            return Ok(());
-        }
-        let bytes = base64_array(text, self.header_bytes()).map_err(|error| array.within(error))?;
-        self.contents.fill(
-            array,
-            Values::Bytes(&mut bytes.as_slice(), bytes.len() as u64),
-        )
-    }
-
-    /// Largest number of bytes of an array.
-    fn most_bytes(&self, array: &Array) -> u64 {
-        let of_value = array.scalar().map_or(8, Scalar::bytes);
-        let most = self.contents.most_values(array.role);
-        most.saturating_mul(of_value as u64)
-    }
-
-    /// Checks that an array can have this number of bytes.
-    fn check_size(&self, array: &Array, bytes: u64) -> Result<()> {
-        let most = self.most_bytes(array);
-        if bytes <= most {
-            return Ok(());
-        }
-        let problem = format!("{bytes} bytes, but the header says {most}");
-        Err(Diagnostic::input("", problem, DAMAGED))
-    }
-
-    fn header_bytes(&self) -> usize {
-        self.encoding.map_or(8, |encoding| encoding.header_bytes)
-    }
-
-    /// The arrays of the appended data, in their order.
-    fn take_appended(&mut self) -> Vec<(u64, Array)> {
-        let mut appended = std::mem::take(&mut self.appended);
-        appended.sort_by_key(|(offset, _)| *offset);
-        appended
-    }
-}
-
-fn read_raw(input: &mut dyn BufRead, file: &mut File) -> Result<()> {
-    to_appended_data(input)?;
-    let mut at = 0_u64;
-    for (offset, array) in file.take_appended() {
-        let gap = offset.checked_sub(at).ok_or_else(|| {
-            Diagnostic::input(
-                "",
-                format!("array '{}' begins inside another one", array.name),
-                DAMAGED,
-            )
-        })?;
-        skip(input, gap)?;
-        let bytes = array_bytes(input, file.header_bytes()).map_err(|error| array.within(error))?;
-        file.check_size(&array, bytes)
-            .map_err(|error| array.within(error))?;
-        if array.role == Role::Other {
-            skip(input, bytes)?;
-        } else {
-            file.contents.fill(&array, Values::Bytes(input, bytes))?;
-        }
-        at = offset
-            .saturating_add(file.header_bytes() as u64)
-            .saturating_add(bytes);
-    }
-    let mut end = Vec::new();
-    input
-        .take(1 << 16)
-        .read_to_end(&mut end)
-        .map_err(|error| unreadable(&error))?;
-    check_end(&end)
-}
-
-fn read_base64(input: &mut dyn BufRead, file: &mut File) -> Result<()> {
-    to_appended_data(input)?;
-    let mut text = Vec::new();
-    let arrays = file.appended.iter();
-    let most = arrays.fold(1 << 16, |sum: u64, (_, array)| {
-        sum.saturating_add(file.most_bytes(array).saturating_mul(2))
-    });
-    Read::take(&mut *input, most)
-        .read_until(b'<', &mut text)
-        .map_err(|error| unreadable(&error))?;
-    if !text.ends_with(b"<") {
-        return Err(truncated());
-    }
-    let end = text.len() - 1;
-    Read::take(&mut *input, 1 << 16)
-        .read_to_end(&mut text)
-        .map_err(|error| unreadable(&error))?;
-    check_end(&text[end..])?;
-    for (offset, array) in file.take_appended() {
-        let start = usize::try_from(offset).unwrap_or(end).min(end);
-        file.fill_base64(&array, &text[start..end])?;
-    }
-    Ok(())
-}
-
-/// Reads up to the underscore before the appended data.
-fn to_appended_data(input: &mut dyn BufRead) -> Result<()> {
-    loop {
-        let mut byte = [0];
-        input
-            .read_exact(&mut byte)
-            .map_err(|error| unreadable(&error))?;
-        match byte[0] {
-            b'_' => return Ok(()),
-            white if white.is_ascii_whitespace() => {}
-            _ => {
-                return Err(Diagnostic::input(
-                    "",
-                    "the appended data do not begin with '_'",
-                    DAMAGED,
-                ));
-            }
+/// Checks that each line has two points.
+fn check_line_ends(arrays: &Arrays, lines: u64) -> Result<()> {
+    let Some(offsets) = arrays.named().get(BOND_OFFSETS) else {
+        return check_count(0, lines.into(), "offsets of lines");
+    };
+    let mut ends = offsets.values.iter().zip(1_u32..);
+    let wrong = ends.position(|(end, line)| !offsets.is_whole || *end != 2.0 * f64::from(line));
+    match wrong {
+        None => Ok(()),
+        Some(line) => {
+            let problem = format!("line {line} does not have two points");
+            let remedy = "a bond joins two: save each bond as a line of its own";
+            Err(Diagnostic::input("array 'offsets'", problem, remedy))
         }
     }
 }
 
-/// The elements that are open at the appended data must be closed: at the latest, a truncated file
-/// is detected here.
-fn check_end(end: &[u8]) -> Result<()> {
-    let closed = String::from_utf8_lossy(end)
-        .split_ascii_whitespace()
-        .collect::<String>();
-    if closed.starts_with("</AppendedData></VTKFile>") {
-        Ok(())
-    } else {
-        Err(truncated())
+fn check_version(arrays: &Arrays) -> Result<()> {
+    if !arrays.has_field(VERSION) {
+        return Ok(());
+    }
+    let [problem, remedy] = match arrays.whole(VERSION) {
+        Ok(Some(FORMAT_VERSION)) => return Ok(()),
+        Ok(Some(version)) if version > FORMAT_VERSION => [
+            &format!("the body has format version {version}; this program knows {FORMAT_VERSION}"),
+            "use a newer program, or write the body with an older one",
+        ],
+        _ => ["the format version makes no sense", DAMAGED],
+    };
+    Err(Diagnostic::input(
+        format!("array '{VERSION}'"),
+        problem,
+        remedy,
+    ))
+}
+
+fn check_unit(arrays: &Arrays) -> Result<()> {
+    match arrays.text(LENGTH_UNIT)? {
+        Some(unit) if unit != METRE => Err(Diagnostic::input(
+            format!("array '{LENGTH_UNIT}'"),
+            format!("the length unit is '{unit}', not '{METRE}'"),
+            "convert the lengths to metres",
+        )),
+        _ => Ok(()),
     }
 }

@@ -1,12 +1,12 @@
 //! Frames: all particles and bonds at one time, in the order of the bodies' files.
 
 use dem_io::Result;
-use dem_io::body::histories::with_arrays;
+use dem_io::body::BondColumn;
+use dem_io::body::histories::DIRECTION;
 use dem_io::body::stored_frame::{
     BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FAILED, FRAGMENT_ID, PARTICLE_ID,
     RADIUS, RIGID, TURN, VELOCITY,
 };
-use dem_io::body::{BondHistories, JointBond, PlasticBond, SummedBond};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
 use super::walls::WallOutput;
@@ -15,9 +15,9 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments::fragment_masses_kg;
 use dem_engine::state::events::REMOVED;
-use dem_engine::state::stored_bonds::{direction_of, joint_of, plastic_of, sum_of};
+use dem_engine::state::stored_bonds::{direction_of, histories_of};
 use dem_physics::bond::BondLoad;
-use dem_physics::bond::failure::stresses;
+use dem_physics::bond::failure::{Stresses, stresses};
 use dem_physics::rigid::rotation_vector;
 use dem_plan::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation_under};
 
@@ -135,39 +135,18 @@ impl FrameOrder {
         files: &mut FrameFiles,
     ) -> Result<()> {
         let bonds = &state.bonds;
+        let loads = Loads::of(state, &self.bonds);
         let bond = |i: usize| self.bonds[i] as usize;
-        // Costly to compute, and needed for seven arrays.
-        let loads: Vec<BondLoad> = (0..self.bonds.len())
-            .map(|i| load(state, bond(i)))
-            .collect();
-        let stresses = |i: usize| stresses(&loads[i], bonds.radius_m(bond(i)));
-        let normal_stress = |i: usize| {
-            let stresses = stresses(i);
-            stresses.axial_pa + stresses.bending_pa
-        };
-        let shear_stress = |i: usize| {
-            let stresses = stresses(i);
-            stresses.shear_pa + stresses.torsion_pa
-        };
         let bond_radius = |i: usize| bonds.radius_m(bond(i));
-        let length = |i: usize| bonds.stress_free_length_m(bond(i));
-        let normal_force = |i: usize| loads[i].normal_n;
-        let shear_force = |i: usize| loads[i].shear_n;
-        let torsion = |i: usize| loads[i].torsion_n_m;
-        let bending = |i: usize| loads[i].bending_n_m;
-        let utilisation = |i: usize| utilisation_under(state, bond(i), &loads[i]);
-        let strengthen = bonds.strengthen_with_rate();
-        let dynamic = if strengthen {
-            dynamic_utilisations(state)
-        } else {
-            Vec::new()
-        };
-        let dynamic = |i: usize| dynamic[bond(i)].unwrap_or(DynamicUtilisation::BROKEN);
-        let strain_rate = |i: usize| dynamic(i).strain_rate_1_s;
-        let increase_factor = |i: usize| dynamic(i).increase_factor;
-        let dynamic_utilisation = |i: usize| dynamic(i).utilisation;
+        let normal_force = |i: usize| loads.of_bonds[i].normal_n;
+        let shear_force = |i: usize| loads.of_bonds[i].shear_n;
+        let torsion = |i: usize| loads.of_bonds[i].torsion_n_m;
+        let bending = |i: usize| loads.of_bonds[i].bending_n_m;
+        let normal_stress = |i: usize| loads.normal_stress_pa(i);
+        let shear_stress = |i: usize| loads.shear_stress_pa(i);
+        let utilisation = |i: usize| utilisation_under(state, bond(i), &loads.of_bonds[i]);
         let broken = |i: usize| u32::from(bonds.is_broken(bond(i)));
-        let mut bond_arrays = vec![
+        let mut arrays = vec![
             scalars(BOND_RADIUS, &bond_radius),
             scalars("normal_force_n", &normal_force),
             scalars("shear_force_n", &shear_force),
@@ -180,79 +159,105 @@ impl FrameOrder {
         ];
         let damage = |i: usize| bonds.damage(bond(i));
         if !bonds.histories.damages.is_empty() {
-            bond_arrays.push(scalars(DAMAGE, &damage));
+            arrays.push(scalars(DAMAGE, &damage));
         }
         let failed = |i: usize| match bonds.is_broken(bond(i)) {
             true => 1.0,
             false => bonds.failed_fraction(bond(i)),
         };
         if !bonds.histories.joints.is_empty() {
-            bond_arrays.push(scalars(FAILED, &failed));
+            arrays.push(scalars(FAILED, &failed));
         }
-        if strengthen {
-            bond_arrays.push(scalars("strain_rate_1_s", &strain_rate));
-            bond_arrays.push(scalars("dynamic_increase_factor", &increase_factor));
-            bond_arrays.push(scalars("dynamic_utilisation", &dynamic_utilisation));
+        let dynamic = |i: usize| loads.dynamic[bond(i)].unwrap_or(DynamicUtilisation::BROKEN);
+        let strain_rate = |i: usize| dynamic(i).strain_rate_1_s;
+        let increase_factor = |i: usize| dynamic(i).increase_factor;
+        let dynamic_utilisation = |i: usize| dynamic(i).utilisation;
+        if bonds.strengthen_with_rate() {
+            arrays.push(scalars("strain_rate_1_s", &strain_rate));
+            arrays.push(scalars("dynamic_increase_factor", &increase_factor));
+            arrays.push(scalars("dynamic_utilisation", &dynamic_utilisation));
         }
-        bond_arrays.push(scalars(BOND_LENGTH, &length));
+        let length = |i: usize| bonds.stress_free_length_m(bond(i));
+        let direction = |i: usize| direction_of(bonds, bond(i), self.is_reversed(state, i));
+        arrays.push(scalars(BOND_LENGTH, &length));
+        if !self.bonds.is_empty() {
+            arrays.push(vectors(DIRECTION, &direction));
+        }
         let poses = &state.particles.poses;
-        let found = self.histories(state);
-        let body_names: Vec<&str> = state.model.bodies.iter().map(|b| b.name.as_str()).collect();
-        let histories = BondHistories {
-            directions: &found.directions,
-            sums: &found.sums,
-            plastics: &found.plastics,
-            joints: &found.joints,
-        };
-        with_arrays(&histories, |histories| {
-            let all: Vec<NamedArray<'_>> = bond_arrays.iter().chain(histories).copied().collect();
-            let frame = Frame {
-                time_s: state.time_s,
-                body_names: &body_names,
-                particles: self.particles.len(),
-                position_m: &|i| poses[self.particles[i] as usize].place().into(),
-                particle_arrays,
-                bonds: self.bonds.len(),
-                ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
-                bond_arrays: &all,
-            };
-            files.append(&frame, &walls.frame(state), walls.fixed())
-        })
+        let histories = histories_of(bonds, &self.bonds, poses, &|i| self.is_reversed(state, i));
+        arrays.extend(histories.iter().map(BondColumn::array));
+        self.append_with(state, [particle_arrays, &arrays], walls, files)
     }
 
-    /// What the bonds of the frame have been through; of each kind none if no bond has any.
-    fn histories(&self, state: &State) -> Histories {
-        let (bonds, poses) = (&state.bonds, &state.particles.poses);
-        let each: Vec<(usize, bool)> = (self.bonds.iter())
-            .map(|&at| {
-                let [a, b] = bonds.ends[at as usize].map(|end| self.place_of[end as usize]);
-                (at as usize, a > b)
-            })
-            .collect();
-        let known = |there: bool| if there { &each[..] } else { &[] };
-        Histories {
-            directions: (each.iter())
-                .map(|&(at, is_reversed)| direction_of(bonds, at, is_reversed))
-                .collect(),
-            sums: (known(!bonds.histories.sums.is_empty()).iter())
-                .map(|&(at, is_reversed)| sum_of(bonds, at, is_reversed))
-                .collect(),
-            plastics: (known(!bonds.histories.plastics.is_empty()).iter())
-                .map(|&(at, is_reversed)| plastic_of(bonds, at, poses, is_reversed))
-                .collect(),
-            joints: (known(!bonds.histories.joints.is_empty()).iter())
-                .map(|&(at, is_reversed)| joint_of(bonds, at, poses, is_reversed))
-                .collect(),
-        }
+    /// Appends the frame with these arrays of the particles and of the bonds.
+    fn append_with(
+        &self,
+        state: &State,
+        [particle_arrays, bond_arrays]: [&[NamedArray<'_>]; 2],
+        walls: &WallOutput,
+        files: &mut FrameFiles,
+    ) -> Result<()> {
+        let body_names: Vec<&str> = state.model.bodies.iter().map(|b| b.name.as_str()).collect();
+        let poses = &state.particles.poses;
+        let frame = Frame {
+            time_s: state.time_s,
+            body_names: &body_names,
+            particles: self.particles.len(),
+            position_m: &|i| poses[self.particles[i] as usize].place().into(),
+            particle_arrays,
+            bonds: self.bonds.len(),
+            ends: &|i| self.ends(state, i),
+            bond_arrays,
+        };
+        files.append(&frame, &walls.frame(state), walls.fixed())
+    }
+
+    /// The particles of bond `i` of the frame, by their numbers in it.
+    fn ends(&self, state: &State, i: usize) -> [u32; 2] {
+        state.bonds.ends[self.bonds[i] as usize].map(|end| self.place_of[end as usize])
+    }
+
+    fn is_reversed(&self, state: &State, i: usize) -> bool {
+        let [a, b] = self.ends(state, i);
+        a > b
     }
 }
 
-/// What the bonds of a frame have been through.
-struct Histories {
-    directions: Vec<[f64; 3]>,
-    sums: Vec<SummedBond>,
-    plastics: Vec<PlasticBond>,
-    joints: Vec<JointBond>,
+/// Loads of the bonds of a frame, costly to compute and needed for many arrays.
+struct Loads {
+    /// By their order in the frame.
+    of_bonds: Vec<BondLoad>,
+    radii_m: Vec<f64>,
+    /// By their order in the state. Empty: strengths do not depend on the rate.
+    dynamic: Vec<Option<DynamicUtilisation>>,
+}
+
+impl Loads {
+    fn of(state: &State, bonds: &[u32]) -> Self {
+        let each = || bonds.iter().map(|at| *at as usize);
+        Self {
+            of_bonds: each().map(|at| load(state, at)).collect(),
+            radii_m: each().map(|at| state.bonds.radius_m(at)).collect(),
+            dynamic: match state.bonds.strengthen_with_rate() {
+                true => dynamic_utilisations(state),
+                false => Vec::new(),
+            },
+        }
+    }
+
+    fn stresses(&self, i: usize) -> Stresses {
+        stresses(&self.of_bonds[i], self.radii_m[i])
+    }
+
+    fn normal_stress_pa(&self, i: usize) -> f64 {
+        let stresses = self.stresses(i);
+        stresses.axial_pa + stresses.bending_pa
+    }
+
+    fn shear_stress_pa(&self, i: usize) -> f64 {
+        let stresses = self.stresses(i);
+        stresses.shear_pa + stresses.torsion_pa
+    }
 }
 
 fn scalars<'a>(name: &'a str, value: &'a dyn Fn(usize) -> f64) -> NamedArray<'a> {

@@ -2,6 +2,9 @@
 
 use std::io::{self, BufRead, ErrorKind, Read};
 
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use base64::{DecodeError, Engine, alphabet};
+
 use crate::diagnostic::{Diagnostic, Result};
 
 /// Number type of an array.
@@ -51,6 +54,10 @@ impl Scalar {
             Self::Int64 | Self::UInt64 | Self::Float64 => 8,
         }
     }
+
+    pub(super) fn is_whole(self) -> bool {
+        !matches!(self, Self::Float32 | Self::Float64)
+    }
 }
 
 /// One value of an array.
@@ -61,7 +68,7 @@ pub(super) enum Number {
 }
 
 /// The remedy for an invalid file.
-pub(super) const DAMAGED: &str = "the file is damaged: write or copy it again";
+pub(crate) const DAMAGED: &str = "the file is damaged: write or copy it again";
 
 /// Source of the values of an array.
 pub(super) enum Values<'a> {
@@ -92,9 +99,9 @@ fn each_of_text(
     mut take: impl FnMut(Number) -> Result<()>,
 ) -> Result<()> {
     for word in text.split_ascii_whitespace() {
-        let number = match scalar {
-            Scalar::Float32 | Scalar::Float64 => word.parse().map(Number::Float).ok(),
-            _ => word.parse().map(Number::Integer).ok(),
+        let number = match scalar.is_whole() {
+            true => word.parse().map(Number::Integer).ok(),
+            false => word.parse().map(Number::Float).ok(),
         };
         take(number.ok_or_else(|| {
             Diagnostic::input(
@@ -233,47 +240,34 @@ pub(super) fn base64_array(text: &[u8], header_bytes: usize) -> Result<Vec<u8>> 
     Ok(decoded)
 }
 
+/// As VTK reads it: bits beyond the last byte do not matter.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_allow_trailing_bits(true)
+        .with_decode_padding_mode(DecodePaddingMode::RequireCanonical),
+);
+
 /// The first `wanted` bytes of a text in base64. There may be padding at the end of each part of
 /// it.
 fn base64(text: &[u8], wanted: usize) -> Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(wanted.min(text.len()) + 2);
-    let (mut bits, mut digits, mut padding) = (0_u32, 0, 0);
-    for &character in text
-        .iter()
-        .filter(|character| !character.is_ascii_whitespace())
-    {
-        if bytes.len() >= wanted {
-            break;
+    let mut digits = text.iter().filter(|digit| !digit.is_ascii_whitespace());
+    while bytes.len() < wanted {
+        let mut group = [0; 4];
+        for digit in &mut group {
+            *digit = *digits.next().ok_or_else(truncated)?;
         }
-        let digit = match character {
-            b'A'..=b'Z' => character - b'A',
-            b'a'..=b'z' => character - b'a' + 26,
-            b'0'..=b'9' => character - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            b'=' => {
-                padding += 1;
-                0
-            }
-            _ => {
-                let character = char::from(character).escape_default();
-                return Err(Diagnostic::input(
-                    "",
-                    format!("'{character}' is no base64 character"),
-                    DAMAGED,
-                ));
-            }
-        };
-        bits = bits << 6 | u32::from(digit);
-        digits += 1;
-        if digits == 4 {
-            let [_, group @ ..] = bits.to_be_bytes();
-            bytes.extend_from_slice(&group[..3 - padding.min(3)]);
-            (bits, digits, padding) = (0, 0, 0);
-        }
-    }
-    if bytes.len() < wanted {
-        return Err(truncated());
+        BASE64
+            .decode_vec(group, &mut bytes)
+            .map_err(|error| match error {
+                DecodeError::InvalidByte(_, digit) if digit != b'=' => {
+                    let digit = char::from(digit).escape_default();
+                    let problem = format!("'{digit}' is no base64 character");
+                    Diagnostic::input("", problem, DAMAGED)
+                }
+                _ => truncated(),
+            })?;
     }
     bytes.truncate(wanted);
     Ok(bytes)

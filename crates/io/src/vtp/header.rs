@@ -1,59 +1,10 @@
-//! The XML of a .vtp file: the arrays that it declares, their roles, and the places of their
-//! values.
+//! The XML of a .vtp file: the arrays that it declares, and the places of their values.
 
 use quick_xml::events::BytesStart;
 
 use super::decode::{DAMAGED, Scalar};
-use super::names::{
-    BOND_LENGTH, BOND_RADIUS, BOND_RANGE, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
-    SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
-};
-use crate::body::{histories, stored_frame as frame, stored_walls as walls};
+use super::shape::{Counts, Shape};
 use crate::diagnostic::{Diagnostic, Result};
-
-/// The type of content as which a file is read, which determines the names of the arrays.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) enum Layout {
-    #[default]
-    Body,
-    Frame,
-    Walls,
-}
-
-/// The role of an array.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    Positions,
-    Radii,
-    /// Rotations of particles.
-    Turns,
-    /// Whether a particle of a frame is a sphere of a rigid clump.
-    Rigid,
-    Connectivity,
-    Offsets,
-    BondRadii,
-    BondLengths,
-    Damages,
-    /// For the frames of a run: the fragment of each particle, its density, and the broken bonds.
-    Clusters,
-    Densities,
-    Broken,
-    /// History of bonds, by its number in [`histories::ALL`].
-    History(usize),
-    /// The id and the body of each particle, and its velocity.
-    Ids,
-    Bodies,
-    Velocities,
-    /// For the walls of a run: the corners of each triangle, where it ends among them, and its
-    /// wall.
-    Corners,
-    CornerOffsets,
-    WallNumbers,
-    /// Field data of this name.
-    Field(&'static str),
-    /// Not used.
-    Other,
-}
 
 /// The encoding of the values of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,22 +15,27 @@ pub(super) enum Format {
     Appended(u64),
 }
 
+/// The shapes of the arrays that are used, by their sections and names. None: it is not used.
+pub(super) type Wanted<'a> = &'a dyn Fn(&str, &str) -> Option<Shape>;
+
 /// An array as the header declares it.
 #[derive(Debug, Clone)]
-pub(super) struct Array {
-    pub(super) role: Role,
+pub(super) struct Declared {
+    /// None: it is not used.
+    pub(super) shape: Option<Shape>,
     pub(super) name: String,
-    pub(super) scalar: String,
+    /// Section and name, as in [`super::Arrays::named`].
+    pub(super) key: String,
+    /// Whether it is one of the arrays that make up points and cells.
+    pub(super) is_of_mesh: bool,
+    pub(super) components: usize,
+    scalar: String,
     pub(super) format: Format,
 }
 
-impl Array {
+impl Declared {
     /// From an element `DataArray` or `Array` inside the element `section`.
-    pub(super) fn declared(
-        element: &BytesStart<'_>,
-        section: &str,
-        layout: Layout,
-    ) -> Result<Self> {
+    pub(super) fn of(element: &BytesStart<'_>, section: &str, wanted: Wanted<'_>) -> Result<Self> {
         let name = attribute(element, "Name")?.unwrap_or_default();
         let scalar = attribute(element, "type")?.unwrap_or_default();
         let format = match attribute(element, "format")?.as_deref() {
@@ -96,12 +52,15 @@ impl Array {
                 return Err(Diagnostic::input("", problem, DAMAGED));
             }
         };
+        let components = attribute(element, "NumberOfComponents")?;
         Ok(Self {
-            role: match layout {
-                Layout::Body => role_of(section, &name),
-                Layout::Frame => role_in_frame(section, &name),
-                Layout::Walls => role_in_walls(section, &name),
+            shape: wanted(section, &name),
+            key: match section {
+                "Points" => "Points/positions_m".to_owned(),
+                _ => format!("{section}/{name}"),
             },
+            is_of_mesh: ["Points", "Lines", "Polys"].contains(&section),
+            components: components.and_then(|text| text.parse().ok()).unwrap_or(1),
             name,
             scalar,
             format,
@@ -117,99 +76,6 @@ impl Array {
     pub(super) fn within(&self, error: Diagnostic) -> Diagnostic {
         error.within(&format!("array '{}'", self.name))
     }
-}
-
-fn role_of(section: &str, name: &str) -> Role {
-    const FIELDS: [&str; 11] = [
-        VERSION,
-        LENGTH_UNIT,
-        PROGRAM,
-        SOURCE,
-        SOURCE_HASH,
-        SHAPE_VOLUME,
-        PARTICLE_DENSITY,
-        OVERLAP,
-        BOND_RANGE,
-        SEED,
-        WARNINGS,
-    ];
-    match (section, name) {
-        ("Points", _) => Role::Positions,
-        ("Lines", "connectivity") => Role::Connectivity,
-        ("Lines", "offsets") => Role::Offsets,
-        ("PointData", RADIUS) => Role::Radii,
-        ("PointData", frame::TURN) => Role::Turns,
-        ("CellData", BOND_RADIUS) => Role::BondRadii,
-        ("CellData", BOND_LENGTH) => Role::BondLengths,
-        ("CellData", frame::DAMAGE) => Role::Damages,
-        ("CellData", frame::BROKEN) => Role::Broken,
-        ("CellData", name) => history(name),
-        ("FieldData", _) => FIELDS
-            .into_iter()
-            .find(|field| *field == name)
-            .map_or(Role::Other, Role::Field),
-        _ => Role::Other,
-    }
-}
-
-fn history(name: &str) -> Role {
-    let at = histories::ALL.iter().position(|other| *other == name);
-    at.map_or(Role::Other, Role::History)
-}
-
-fn role_in_frame(section: &str, name: &str) -> Role {
-    match (section, name) {
-        ("Points", _) => Role::Positions,
-        ("Lines", "connectivity") => Role::Connectivity,
-        ("Lines", "offsets") => Role::Offsets,
-        ("PointData", frame::RADIUS) => Role::Radii,
-        ("PointData", frame::TURN) => Role::Turns,
-        ("PointData", frame::RIGID) => Role::Rigid,
-        ("PointData", frame::FRAGMENT_ID) => Role::Clusters,
-        ("PointData", frame::DENSITY) => Role::Densities,
-        ("PointData", frame::PARTICLE_ID) => Role::Ids,
-        ("PointData", frame::BODY) => Role::Bodies,
-        ("PointData", frame::VELOCITY) => Role::Velocities,
-        ("CellData", frame::BOND_RADIUS) => Role::BondRadii,
-        ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
-        ("CellData", frame::DAMAGE) => Role::Damages,
-        ("CellData", frame::BROKEN) => Role::Broken,
-        ("CellData", name) => history(name),
-        ("FieldData", frame::TIME) => Role::Field(frame::TIME),
-        ("FieldData", frame::BODY_NAMES) => Role::Field(frame::BODY_NAMES),
-        _ => Role::Other,
-    }
-}
-
-fn role_in_walls(section: &str, name: &str) -> Role {
-    const FIELDS: [&str; 4] = [
-        frame::TIME,
-        walls::WALL_NAMES,
-        walls::WALL_FORCES,
-        walls::FIXED_WALLS,
-    ];
-    match (section, name) {
-        ("Points", _) => Role::Positions,
-        ("Polys", "connectivity") => Role::Corners,
-        ("Polys", "offsets") => Role::CornerOffsets,
-        ("CellData", walls::WALL) => Role::WallNumbers,
-        ("FieldData", _) => FIELDS
-            .into_iter()
-            .find(|field| *field == name)
-            .map_or(Role::Other, Role::Field),
-        _ => Role::Other,
-    }
-}
-
-/// The numbers of points and cells.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Counts {
-    pub(super) points: u64,
-    pub(super) lines: u64,
-    /// Number of vertex cells, whose cell data precede those of the lines.
-    pub(super) cells_before: u64,
-    /// Number of polygons and strips, whose cell data follow those of the lines.
-    pub(super) cells_after: u64,
 }
 
 impl Counts {
@@ -271,8 +137,8 @@ impl Encoding {
     }
 
     /// Refuses compressed values.
-    pub(super) fn check(&self, array: &Array) -> Result<()> {
-        if self.compressed && array.format != Format::Ascii && array.role != Role::Other {
+    pub(super) fn check(&self, array: &Declared) -> Result<()> {
+        if self.compressed && array.format != Format::Ascii && array.shape.is_some() {
             return Err(Diagnostic::input(
                 "",
                 format!("array '{}' is compressed", array.name),
