@@ -5,21 +5,6 @@ use std::f64::consts::PI;
 
 use crate::diagnostic::{Diagnostic, Result};
 
-/// Units of length and their size in metres.
-pub const LENGTH_UNITS: [(&str, f64); 7] = [
-    ("nm", 1e-9),
-    ("um", 1e-6),
-    ("mm", 1e-3),
-    ("cm", 1e-2),
-    ("m", 1.0),
-    ("km", 1e3),
-    ("in", 0.0254),
-];
-
-/// Units of density and their size in kg/m3.
-pub(crate) const DENSITY_UNITS: [(&str, f64); 4] =
-    [("kg/m3", 1.0), ("g/cm3", 1e3), ("g/cc", 1e3), ("t/m3", 1e3)];
-
 /// A physical dimension and its usual units.
 #[derive(Debug, Clone, Copy)]
 pub struct Dimension {
@@ -41,74 +26,141 @@ impl Dimension {
     }
 }
 
-/// Length, m.
-pub const LENGTH: Dimension = Dimension {
-    name: "length",
-    si: "m",
-    units: &LENGTH_UNITS,
-    example: "2mm",
-};
+/// Makes a constant of each dimension, and the list of all.
+macro_rules! dimensions {
+    ($(
+        $(#[$doc:meta])+
+        $dimension:ident: $name:literal in $si:literal, as $example:literal [
+            $($unit:literal: $size:expr,)+
+        ]
+    )+) => {
+        $(
+            $(#[$doc])+
+            pub const $dimension: Dimension = Dimension {
+                name: $name,
+                si: $si,
+                units: &[$(($unit, $size)),+],
+                example: $example,
+            };
+        )+
 
-/// Area, m2.
-pub const AREA: Dimension = Dimension {
-    name: "area",
-    si: "m2",
-    units: &[("mm2", 1e-6), ("cm2", 1e-4), ("m2", 1.0)],
-    example: "9cm2",
-};
+        /// All dimensions.
+        pub const DIMENSIONS: [Dimension; 22] = [$($dimension),+];
+    };
+}
 
-/// Volume, m3.
-pub const VOLUME: Dimension = Dimension {
-    name: "volume",
-    si: "m3",
-    units: &[
-        ("um3", 1e-18),
-        ("nl", 1e-12),
-        ("mm3", 1e-9),
-        ("ul", 1e-9),
-        ("ml", 1e-6),
-        ("cm3", 1e-6),
-        ("l", 1e-3),
-        ("m3", 1.0),
-    ],
-    example: "1 mm3",
-};
+dimensions! {
+    /// A number without a unit.
+    NUMBER: "number" in "", as "0.3" [
+        "%": 1e-2,
+    ]
 
-/// Density, kg/m3.
-pub const DENSITY: Dimension = Dimension {
-    name: "density",
-    si: "kg/m3",
-    units: &DENSITY_UNITS,
-    example: "2050kg/m3",
-};
+    /// Length, m.
+    LENGTH: "length" in "m", as "2mm" [
+        "nm": 1e-9, "um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "km": 1e3, "in": 0.0254,
+    ]
 
-/// Time, s.
-pub const TIME: Dimension = Dimension {
-    name: "time",
-    si: "s",
-    units: &[
-        ("ns", 1e-9),
-        ("us", 1e-6),
-        ("ms", 1e-3),
-        ("s", 1.0),
-        ("min", 60.0),
-        ("h", 3600.0),
-    ],
-    example: "5 ms",
-};
+    /// Area, m2.
+    AREA: "area" in "m2", as "9cm2" [
+        "mm2": 1e-6, "cm2": 1e-4, "m2": 1.0,
+    ]
 
-/// Angle, rad.
-pub const ANGLE: Dimension = Dimension {
-    name: "angle",
-    si: "rad",
-    units: &[
-        ("rad", 1.0),
-        ("mrad", 1e-3),
-        ("deg", PI / 180.0),
-        ("°", PI / 180.0),
-    ],
-    example: "45 deg",
-};
+    /// Volume, m3.
+    VOLUME: "volume" in "m3", as "1 mm3" [
+        "um3": 1e-18, "nl": 1e-12, "mm3": 1e-9, "ul": 1e-9, "ml": 1e-6, "cm3": 1e-6, "l": 1e-3,
+        "m3": 1.0,
+    ]
+
+    /// Time, s.
+    TIME: "time" in "s", as "5 ms" [
+        "ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0,
+    ]
+
+    /// Mass, kg.
+    MASS: "mass" in "kg", as "20 g" [
+        "ug": 1e-9, "mg": 1e-6, "g": 1e-3, "kg": 1.0, "t": 1e3,
+    ]
+
+    /// Density, kg/m3.
+    DENSITY: "density" in "kg/m3", as "2050kg/m3" [
+        "kg/m3": 1.0, "g/cm3": 1e3, "g/cc": 1e3, "t/m3": 1e3,
+    ]
+
+    /// Angle, rad.
+    ANGLE: "angle" in "rad", as "45 deg" [
+        "rad": 1.0, "mrad": 1e-3, "deg": PI / 180.0, "°": PI / 180.0,
+    ]
+
+    /// Velocity, m/s.
+    VELOCITY: "velocity" in "m/s", as "3 m/s" [
+        "um/s": 1e-6, "mm/s": 1e-3, "cm/s": 1e-2, "m/s": 1.0, "km/h": 1.0 / 3.6,
+    ]
+
+    /// Angular velocity, rad/s.
+    ANGULAR_VELOCITY: "angular velocity" in "rad/s", as "2 rpm" [
+        "rad/s": 1.0, "deg/s": PI / 180.0, "rpm": PI / 30.0,
+    ]
+
+    /// Acceleration, m/s2.
+    ACCELERATION: "acceleration" in "m/s2", as "9.81 m/s2" [
+        "mm/s2": 1e-3, "cm/s2": 1e-2, "m/s2": 1.0,
+    ]
+
+    /// Stress and modulus, Pa.
+    STRESS: "stress" in "Pa", as "12.05 MPa" [
+        "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/m2": 1.0, "N/mm2": 1e6,
+    ]
+
+    /// Force, N.
+    FORCE: "force" in "N", as "100 kN" [
+        "uN": 1e-6, "mN": 1e-3, "N": 1.0, "kN": 1e3, "MN": 1e6,
+    ]
+
+    /// Torque, N m.
+    TORQUE: "torque" in "N m", as "2 N m" [
+        "uN m": 1e-6, "mN m": 1e-3, "N mm": 1e-3, "N m": 1.0, "kN m": 1e3,
+    ]
+
+    /// Stiffness, N/m.
+    STIFFNESS: "stiffness" in "N/m", as "100 kN/m" [
+        "mN/m": 1e-3, "N/m": 1.0, "N/mm": 1e3, "kN/m": 1e3, "kN/mm": 1e6, "MN/m": 1e6,
+    ]
+
+    /// Energy, J.
+    ENERGY: "energy" in "J", as "3 mJ" [
+        "nJ": 1e-9, "uJ": 1e-6, "mJ": 1e-3, "J": 1.0, "kJ": 1e3,
+    ]
+
+    /// Energy over mass, J/kg.
+    ENERGY_PER_MASS: "energy per mass" in "J/kg", as "0.01 J/kg" [
+        "mJ/kg": 1e-3, "J/kg": 1.0, "kJ/kg": 1e3, "kWh/t": 3600.0,
+    ]
+
+    /// Energy over area, J/m2.
+    ENERGY_PER_AREA: "energy per area" in "J/m2", as "50 J/m2" [
+        "mJ/m2": 1e-3, "J/m2": 1.0, "kJ/m2": 1e3, "N/m": 1.0,
+    ]
+
+    /// Surface tension, N/m.
+    SURFACE_TENSION: "surface tension" in "N/m", as "73 mN/m" [
+        "mN/m": 1e-3, "N/m": 1.0, "mJ/m2": 1e-3, "J/m2": 1.0,
+    ]
+
+    /// Mass over time, kg/s.
+    MASS_RATE: "mass rate" in "kg/s", as "10 kg/s" [
+        "g/s": 1e-3, "kg/s": 1.0, "kg/h": 1.0 / 3600.0, "t/h": 1.0 / 3.6,
+    ]
+
+    /// Rate, 1/s.
+    RATE: "rate" in "1/s", as "1e-5 1/s" [
+        "1/s": 1.0, "/s": 1.0, "%/s": 1e-2,
+    ]
+
+    /// Force over velocity, N s/m.
+    VISCOUS_DAMPING: "damping coefficient" in "N s/m", as "10 N s/m" [
+        "mN s/m": 1e-3, "N s/m": 1.0, "N s/mm": 1e3, "kN s/m": 1e3,
+    ]
+}
 
 /// An angle that is given and shown in degrees.
 pub const ANGLE_DEG: Dimension = Dimension {
@@ -122,219 +174,6 @@ pub const ANGLE_DEG: Dimension = Dimension {
     ],
     example: "30 deg",
 };
-
-/// Velocity, m/s.
-pub const VELOCITY: Dimension = Dimension {
-    name: "velocity",
-    si: "m/s",
-    units: &[
-        ("um/s", 1e-6),
-        ("mm/s", 1e-3),
-        ("cm/s", 1e-2),
-        ("m/s", 1.0),
-        ("km/h", 1.0 / 3.6),
-    ],
-    example: "3 m/s",
-};
-
-/// Angular velocity, rad/s.
-pub const ANGULAR_VELOCITY: Dimension = Dimension {
-    name: "angular velocity",
-    si: "rad/s",
-    units: &[("rad/s", 1.0), ("deg/s", PI / 180.0), ("rpm", PI / 30.0)],
-    example: "2 rpm",
-};
-
-/// Acceleration, m/s2.
-pub const ACCELERATION: Dimension = Dimension {
-    name: "acceleration",
-    si: "m/s2",
-    units: &[("mm/s2", 1e-3), ("cm/s2", 1e-2), ("m/s2", 1.0)],
-    example: "9.81 m/s2",
-};
-
-/// Stress and modulus, Pa.
-pub const STRESS: Dimension = Dimension {
-    name: "stress",
-    si: "Pa",
-    units: &[
-        ("Pa", 1.0),
-        ("kPa", 1e3),
-        ("MPa", 1e6),
-        ("GPa", 1e9),
-        ("N/m2", 1.0),
-        ("N/mm2", 1e6),
-    ],
-    example: "12.05 MPa",
-};
-
-/// Force, N.
-pub const FORCE: Dimension = Dimension {
-    name: "force",
-    si: "N",
-    units: &[
-        ("uN", 1e-6),
-        ("mN", 1e-3),
-        ("N", 1.0),
-        ("kN", 1e3),
-        ("MN", 1e6),
-    ],
-    example: "100 kN",
-};
-
-/// Torque, N m.
-pub const TORQUE: Dimension = Dimension {
-    name: "torque",
-    si: "N m",
-    units: &[
-        ("uN m", 1e-6),
-        ("mN m", 1e-3),
-        ("N mm", 1e-3),
-        ("N m", 1.0),
-        ("kN m", 1e3),
-    ],
-    example: "2 N m",
-};
-
-/// Mass, kg.
-pub const MASS: Dimension = Dimension {
-    name: "mass",
-    si: "kg",
-    units: &[
-        ("ug", 1e-9),
-        ("mg", 1e-6),
-        ("g", 1e-3),
-        ("kg", 1.0),
-        ("t", 1e3),
-    ],
-    example: "20 g",
-};
-
-/// Stiffness, N/m.
-pub const STIFFNESS: Dimension = Dimension {
-    name: "stiffness",
-    si: "N/m",
-    units: &[
-        ("mN/m", 1e-3),
-        ("N/m", 1.0),
-        ("N/mm", 1e3),
-        ("kN/m", 1e3),
-        ("kN/mm", 1e6),
-        ("MN/m", 1e6),
-    ],
-    example: "100 kN/m",
-};
-
-/// Energy, J.
-pub const ENERGY: Dimension = Dimension {
-    name: "energy",
-    si: "J",
-    units: &[
-        ("nJ", 1e-9),
-        ("uJ", 1e-6),
-        ("mJ", 1e-3),
-        ("J", 1.0),
-        ("kJ", 1e3),
-    ],
-    example: "3 mJ",
-};
-
-/// Energy over mass, J/kg.
-pub const ENERGY_PER_MASS: Dimension = Dimension {
-    name: "energy per mass",
-    si: "J/kg",
-    units: &[
-        ("mJ/kg", 1e-3),
-        ("J/kg", 1.0),
-        ("kJ/kg", 1e3),
-        ("kWh/t", 3600.0),
-    ],
-    example: "0.01 J/kg",
-};
-
-/// Energy over area, J/m2.
-pub const ENERGY_PER_AREA: Dimension = Dimension {
-    name: "energy per area",
-    si: "J/m2",
-    units: &[("mJ/m2", 1e-3), ("J/m2", 1.0), ("kJ/m2", 1e3), ("N/m", 1.0)],
-    example: "50 J/m2",
-};
-
-/// Surface tension, N/m.
-pub const SURFACE_TENSION: Dimension = Dimension {
-    name: "surface tension",
-    si: "N/m",
-    units: &[("mN/m", 1e-3), ("N/m", 1.0), ("mJ/m2", 1e-3), ("J/m2", 1.0)],
-    example: "73 mN/m",
-};
-
-/// Mass over time, kg/s.
-pub const MASS_RATE: Dimension = Dimension {
-    name: "mass rate",
-    si: "kg/s",
-    units: &[
-        ("g/s", 1e-3),
-        ("kg/s", 1.0),
-        ("kg/h", 1.0 / 3600.0),
-        ("t/h", 1.0 / 3.6),
-    ],
-    example: "10 kg/s",
-};
-
-/// Rate, 1/s.
-pub const RATE: Dimension = Dimension {
-    name: "rate",
-    si: "1/s",
-    units: &[("1/s", 1.0), ("/s", 1.0), ("%/s", 1e-2)],
-    example: "1e-5 1/s",
-};
-
-/// Force over velocity, N s/m.
-pub const VISCOUS_DAMPING: Dimension = Dimension {
-    name: "damping coefficient",
-    si: "N s/m",
-    units: &[
-        ("mN s/m", 1e-3),
-        ("N s/m", 1.0),
-        ("N s/mm", 1e3),
-        ("kN s/m", 1e3),
-    ],
-    example: "10 N s/m",
-};
-
-/// A number without a unit.
-pub const NUMBER: Dimension = Dimension {
-    name: "number",
-    si: "",
-    units: &[("%", 1e-2)],
-    example: "0.3",
-};
-
-/// All dimensions.
-pub const DIMENSIONS: [Dimension; 22] = [
-    NUMBER,
-    LENGTH,
-    AREA,
-    VOLUME,
-    TIME,
-    MASS,
-    DENSITY,
-    ANGLE,
-    VELOCITY,
-    ANGULAR_VELOCITY,
-    ACCELERATION,
-    STRESS,
-    FORCE,
-    TORQUE,
-    STIFFNESS,
-    ENERGY,
-    ENERGY_PER_MASS,
-    ENERGY_PER_AREA,
-    SURFACE_TENSION,
-    MASS_RATE,
-    RATE,
-    VISCOUS_DAMPING,
-];
 
 /// A length in metres from "2mm", "2 mm" or a plain number of metres.
 pub fn length_m(text: &str) -> Result<f64> {
@@ -551,14 +390,14 @@ mod tests {
         let declared = include_str!("units.rs")
             .matches(": Dimension = Dimension {")
             .count();
-        // This test itself contains the names once, and `ANGLE_DEG` has the units of `ANGLE`.
+        // The table, this test itself, and `ANGLE_DEG`, which has the units of `ANGLE`.
+        assert_eq!(declared, 3);
         let names = |dimension: &Dimension| -> Vec<&str> {
             let mut names: Vec<&str> = dimension.units.iter().map(|(unit, _)| *unit).collect();
             names.sort_unstable();
             names
         };
         assert_eq!(names(&ANGLE_DEG), names(&ANGLE));
-        assert_eq!(declared - 2, DIMENSIONS.len());
         let mut names: Vec<&str> = DIMENSIONS.iter().map(|d| d.name).collect();
         names.sort_unstable();
         names.dedup();

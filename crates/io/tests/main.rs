@@ -4,3 +4,4 @@
 mod body_files;
 mod interrupted_write;
 mod surfaces;
+mod units;

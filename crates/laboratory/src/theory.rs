@@ -17,11 +17,6 @@ pub struct Beam {
 /// Shear coefficient of a rectangle: 5/6, from the energy of the parabolic shear stress.
 pub const KAPPA: f64 = 5.0 / 6.0;
 
-/// Shear coefficient of a rectangle by Cowper 1966.
-pub fn kappa_cowper(poisson_ratio: f64) -> f64 {
-    10.0 * (1.0 + poisson_ratio) / (12.0 + 11.0 * poisson_ratio)
-}
-
 impl Beam {
     /// Second moment of area, m4.
     pub fn second_moment_m4(&self) -> f64 {
@@ -44,13 +39,6 @@ impl Beam {
     /// eq. 18; F L^3/(48 E I) for one pin.
     pub fn deflection_m(&self, force_n: f64, young_modulus_pa: f64) -> f64 {
         force_n / (young_modulus_pa * self.bending_shape_m())
-    }
-
-    /// Deflection halfway between the supports, m, without shear: F a (3 L^2 - 4 a^2)/(48 E I).
-    pub fn deflection_at_middle_m(&self, force_n: f64, young_modulus_pa: f64) -> f64 {
-        let (span, arm) = (self.span_m, self.arm_m());
-        force_n * arm * (3.0 * span * span - 4.0 * arm * arm)
-            / (48.0 * young_modulus_pa * self.second_moment_m4())
     }
 
     /// Shear contribution to the deflection at the loading pins, m: F a/(2 kappa G A).
@@ -130,20 +118,6 @@ pub fn mohr_coulomb_of_peaks(slope: f64, intercept_pa: f64) -> (f64, f64) {
     let root = slope.sqrt();
     let angle_rad = 2.0 * root.atan() - std::f64::consts::FRAC_PI_2;
     (0.5 * intercept_pa / root, angle_rad)
-}
-
-/// Largest principal stress, Pa, at which a plane of weakness slides whose normal is inclined by
-/// `angle_rad` to it: sigma_1 = sigma_3 + 2 (c + sigma_3 tan phi)/((1 - tan phi cot beta) sin 2
-/// beta) (Jaeger, Cook and Zimmerman 2007, section 4.8).
-pub fn plane_of_weakness_pa(
-    cohesion_pa: f64,
-    friction_angle_rad: f64,
-    angle_rad: f64,
-    confining_pa: f64,
-) -> f64 {
-    let friction = friction_angle_rad.tan();
-    let resistance = 2.0 * (cohesion_pa + confining_pa * friction);
-    confining_pa + resistance / ((1.0 - friction / angle_rad.tan()) * (2.0 * angle_rad).sin())
 }
 
 /// Stress in a disc of this diameter and thickness under two opposite forces, Pa, on the loaded

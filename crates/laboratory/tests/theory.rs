@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use dem_laboratory::theory::{Beam, KAPPA, ON_PINS, bar_stress_pa, disc_stress_pa, kappa_cowper};
+use dem_laboratory::theory::{Beam, KAPPA, ON_PINS, bar_stress_pa, disc_stress_pa};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -13,7 +13,6 @@ struct Reference {
     a: f64,
     failure_force_eq19_N: f64,
     w_eq18_at_failure: f64,
-    w_mid_EB_at_failure: f64,
     stiffness_eq18_N_per_m: f64,
     outer_fibre_strain_at_failure: f64,
     shear_deflection_at_pin: ByKappa,
@@ -67,6 +66,11 @@ fn assert_same(got: f64, wanted: f64) {
     );
 }
 
+/// Shear coefficient of a rectangle by Cowper 1966.
+fn kappa_cowper(poisson_ratio: f64) -> f64 {
+    10.0 * (1.0 + poisson_ratio) / (12.0 + 11.0 * poisson_ratio)
+}
+
 #[test]
 fn four_point_bending_is_that_of_the_reference() {
     let (read, beam) = reference();
@@ -81,10 +85,6 @@ fn four_point_bending_is_that_of_the_reference() {
     assert_same(
         modulus * beam.bending_shape_m(),
         read.stiffness_eq18_N_per_m,
-    );
-    assert_same(
-        beam.deflection_at_middle_m(force, modulus),
-        read.w_mid_EB_at_failure,
     );
     assert_same(
         read.input.sigma / modulus,
@@ -137,7 +137,6 @@ fn one_pin_is_the_beam_of_the_text_books() {
     let second_moment = 0.03 * 0.02_f64.powi(3) / 12.0;
     let wanted = force * 0.16_f64.powi(3) / (48.0 * modulus * second_moment);
     assert_same(beam.deflection_m(force, modulus), wanted);
-    assert_same(beam.deflection_at_middle_m(force, modulus), wanted);
     let moment = force * 0.16 / 4.0;
     assert_same(beam.stress_pa(force), moment * 0.01 / second_moment);
     // F L/(4 kappa G A)

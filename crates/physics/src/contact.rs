@@ -143,8 +143,8 @@ impl<T: Number> Damping<T> {
         }
     }
 
-    /// Power lost at this [relative velocity](kinematics::relative_velocity), m/s, and spin of b
-    /// relative to a, rad/s, at the time of the forces.
+    /// Power lost at this velocity of b's surface relative to a's at the contact point, m/s, and
+    /// spin of b relative to a, rad/s, at the time of the forces.
     ///
     /// Over a step: half of it with the forces at its beginning, half with those at its end, both
     /// with the velocity in the middle.

@@ -6,6 +6,8 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod common;
+#[cfg(target_arch = "x86_64")]
+mod register;
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests;
 

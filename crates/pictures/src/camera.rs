@@ -37,17 +37,11 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera that looks in this direction and shows an entire box, with `up` upwards in the
-    /// picture.
+    /// The camera that looks in this direction and shows all these points, m, with `up` upwards in
+    /// the picture. Shape n x 3. Tighter than around a box if walls are tilted.
     ///
     /// Directions may have any length. If they are invalid, the three-quarter view is used.
     /// `size_px`: width and height.
-    pub fn looking(direction: [f64; 3], up: [f64; 3], at: &Bounds, size_px: [u32; 2]) -> Self {
-        Self::around(direction, up, &at.corners(), size_px)
-    }
-
-    /// As [`Camera::looking`], around points, m. Shape n x 3. Tighter than a box if walls are
-    /// tilted.
     pub fn around(
         direction: [f64; 3],
         up: [f64; 3],
@@ -159,7 +153,7 @@ mod tests {
             low: [-2.0, 1.0, 0.0],
             high: [5.0, 3.0, 2.5],
         };
-        let camera = Camera::looking([1.0, 2.0, -1.0], [0.0, 0.0, 1.0], &at, [960, 540]);
+        let camera = Camera::around([1.0, 2.0, -1.0], [0.0, 0.0, 1.0], &at.corners(), [960, 540]);
         for corner in at.corners() {
             let [x, y, _] = camera.project(corner);
             assert!((30.0..930.0).contains(&x) && (50.0..480.0).contains(&y));

@@ -35,9 +35,14 @@ fn plane(point_m: [f64; 3], normal: [f64; 3]) -> Surface {
     Surface::plane(&HalfSpace { point_m, normal }, &AROUND, &[])
 }
 
+/// A view of all that is around, with z up.
+fn looking(direction: [f64; 3]) -> Camera {
+    Camera::around(direction, [0.0, 0.0, 1.0], &AROUND.corners(), [320, 200])
+}
+
 /// View along y, with x to the right and z up.
 fn front() -> Camera {
-    Camera::looking([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], &AROUND, [320, 200])
+    looking([0.0, 1.0, 0.0])
 }
 
 fn middle(camera: &Camera, point: [f64; 3]) -> [u32; 2] {
@@ -154,7 +159,7 @@ fn walls_let_balls_behind_them_shine_through() {
 
 #[test]
 fn a_ball_throws_its_shadow_on_the_floor_and_not_through_it() {
-    let camera = Camera::looking([0.0, 1.0, -1.0], [0.0, 0.0, 1.0], &AROUND, [320, 200]);
+    let camera = looking([0.0, 1.0, -1.0]);
     let floor = |z: f64| plane([0.0, 0.0, z], [0.0, 0.0, 1.0]);
     let grey = |balls: &[Ball], walls: &[Surface]| -> u64 {
         let image = render(&camera, balls, walls);

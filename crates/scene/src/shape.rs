@@ -10,7 +10,7 @@ use super::plain_table::plain_table;
 use super::schema::{Key, Kind, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::{LENGTH, LENGTH_UNITS, length_unit_m};
+use dem_io::units::{LENGTH, length_unit_m};
 
 plain_table! {
     BOX = "Box";
@@ -54,7 +54,7 @@ plain_table! {
 pub(super) const UNIT: Key = Key::new(
     "unit",
     Kind::Either(&[
-        Kind::Word(|| words_of(&LENGTH_UNITS)),
+        Kind::Word(|| words_of(LENGTH.units)),
         Kind::Text("a unit of length"),
     ]),
     "Unit of length of the STL file; required with `stl`.",

@@ -4,7 +4,6 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use dem_laboratory::theory::plane_of_weakness_pa;
 use serde_json::Value;
 
 use super::page::{assert_shown, filled};
@@ -288,6 +287,20 @@ fn plane_of_weakness(folder: &Path) -> (String, String) {
     let cases: Vec<Case> = pressures.into_iter().enumerate().map(of).collect();
     let line = line_of(&found, "joint in triaxial compression", cohesion_pa);
     (compared("axial stress at failure", "kPa", &cases), line)
+}
+
+/// Largest principal stress, Pa, at which a plane of weakness slides whose normal is inclined by
+/// `angle_rad` to it: sigma_1 = sigma_3 + 2 (c + sigma_3 tan phi)/((1 - tan phi cot beta) sin 2
+/// beta) (Jaeger, Cook and Zimmerman 2007, section 4.8).
+fn plane_of_weakness_pa(
+    cohesion_pa: f64,
+    friction_angle_rad: f64,
+    angle_rad: f64,
+    confining_pa: f64,
+) -> f64 {
+    let friction = friction_angle_rad.tan();
+    let resistance = 2.0 * (cohesion_pa + confining_pa * friction);
+    confining_pa + resistance / ((1.0 - friction / angle_rad.tan()) * (2.0 * angle_rad).sin())
 }
 
 fn mohr_coulomb() -> String {

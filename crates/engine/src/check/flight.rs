@@ -28,15 +28,15 @@ pub struct FreeBody {
     /// Name of the body in the scene.
     pub name: String,
     /// Centre of mass, m.
-    centre_m: Vector3<f64>,
+    pub(super) centre_m: Vector3<f64>,
     /// m/s.
     pub velocity_m_s: Vector3<f64>,
-    spin_rad_s: Vector3<f64>,
-    gravity_m_s2: Vector3<f64>,
+    pub(super) spin_rad_s: Vector3<f64>,
+    pub(super) gravity_m_s2: Vector3<f64>,
     /// Centres relative to the centre of mass, m, and radii, m.
-    spheres: Vec<(Vector3<f64>, f64)>,
+    pub(super) spheres: Vec<(Vector3<f64>, f64)>,
     /// Largest distance of a point from the centre of mass, m.
-    reach_m: f64,
+    pub(super) reach_m: f64,
 }
 
 /// First meeting of a flying body.
@@ -136,7 +136,8 @@ pub fn free_clusters(state: &State, clusters: &[&[u32]], ahead_s: f64) -> Vec<Fr
 }
 
 impl FreeBody {
-    fn of_particles(state: &State, name: &str, particles: &[u32]) -> Self {
+    /// The particles as one rigid body.
+    pub(super) fn of_particles(state: &State, name: &str, particles: &[u32]) -> Self {
         let p = &state.particles;
         let (mut mass_kg, mut moment, mut momentum) = (0.0, Vector3::zeros(), Vector3::zeros());
         let mut spin = Vector3::zeros();
@@ -164,10 +165,20 @@ impl FreeBody {
     }
 
     fn of_clump(state: &State, clump: &Clump) -> Self {
+        let outer = &state.clumps.template(clump).outer;
+        Self::of_spheres(state, clump, outer.iter().map(|&sphere| sphere as usize))
+    }
+
+    /// A clump with these of its spheres.
+    pub(super) fn of_spheres(
+        state: &State,
+        clump: &Clump,
+        spheres: impl Iterator<Item = usize>,
+    ) -> Self {
         let template = state.clumps.template(clump);
         let centre_m = Vector3::from(clump.place_m);
-        let spheres = template.outer.iter().map(|&sphere| {
-            let pose = template.pose(sphere as usize, clump);
+        let spheres = spheres.map(|sphere| {
+            let pose = template.pose(sphere, clump);
             (pose.place() - centre_m, template.scale * pose.radius_m())
         });
         Self::new(
@@ -293,7 +304,7 @@ impl FreeBody {
     fn time_for(&self, way_m: f64, from_s: f64) -> f64 {
         let speed = self.velocity_after(from_s).norm() + self.spin_rad_s.norm() * self.reach_m;
         let gravity = self.gravity_m_s2.norm();
-        2.0 * way_m / (speed + (speed * speed + 2.0 * gravity * way_m).sqrt())
+        time_over(way_m, speed, gravity)
     }
 
     /// Whether it moves away from a wall for ever from a moment on.
@@ -346,6 +357,11 @@ impl FreeBody {
     }
 }
 
+/// Time in which a speed, m/s, that grows by an acceleration, m/s2, covers a way, m, in s.
+pub(super) fn time_over(way_m: f64, speed: f64, acceleration: f64) -> f64 {
+    2.0 * way_m / (speed + (speed * speed + 2.0 * acceleration * way_m).sqrt())
+}
+
 /// Time at which two points on a parabola relative to each other, from this distance, m, at this
 /// velocity, m/s, and acceleration, m/s2, first come as near as `reach_m`, s. None: never.
 fn approach_after([apart, velocity, gravity]: [Vector3<f64>; 3], reach_m: f64) -> Option<f64> {
@@ -361,8 +377,7 @@ fn approach_after([apart, velocity, gravity]: [Vector3<f64>; 3], reach_m: f64) -
         if recedes.iter().all(|part| *part >= 0.0) {
             return None;
         }
-        let (v, g) = (speed.norm(), gravity.norm());
-        after_s += 2.0 * gap_m / (v + (v * v + 2.0 * g * gap_m).sqrt());
+        after_s += time_over(gap_m, speed.norm(), gravity.norm());
     }
     Some(after_s)
 }

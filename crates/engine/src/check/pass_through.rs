@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use dem_io::units::significant;
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::flight::{FreeBody, time_over};
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clumps::Clump;
@@ -19,18 +20,6 @@ const MOVES: usize = 1000;
 /// A gap below this fraction of the extent of the bodies is closed.
 const CLOSED: f64 = 1e-6;
 
-/// A body that moves as a rigid one.
-struct Mover<'a> {
-    name: &'a str,
-    centre_m: Vector3<f64>,
-    velocity_m_s: Vector3<f64>,
-    spin_rad_s: Vector3<f64>,
-    gravity_m_s2: Vector3<f64>,
-    /// Centres relative to the centre of mass, m, and radii, m.
-    spheres: Vec<(Vector3<f64>, f64)>,
-    reach_m: f64,
-}
-
 /// The first two bodies that meet before `end_s`, although no contact is defined, as a sentence.
 /// Loaded bodies and those that supports move are left out: their motion is not known.
 pub fn passes_through(state: &State, bodies: &[PlacedBody], end_s: f64) -> Option<String> {
@@ -40,13 +29,13 @@ pub fn passes_through(state: &State, bodies: &[PlacedBody], end_s: f64) -> Optio
         .all
         .iter()
         .map(|clump| mover_of_clump(state, clump));
-    let movers: Vec<Mover<'_>> = of_bodies.chain(of_clumps).take(MOST_BODIES).collect();
+    let movers: Vec<FreeBody> = of_bodies.chain(of_clumps).take(MOST_BODIES).collect();
     let mut first: Option<(f64, &str, &str)> = None;
     for (n, one) in movers.iter().enumerate() {
         for other in &movers[n + 1..] {
             let until_s = first.map_or(end_s, |(at_s, ..)| at_s);
             if let Some(at_s) = meeting_s(one, other, until_s) {
-                first = Some((at_s, one.name, other.name));
+                first = Some((at_s, &one.name, &other.name));
             }
         }
     }
@@ -59,8 +48,7 @@ pub fn passes_through(state: &State, bodies: &[PlacedBody], end_s: f64) -> Optio
 }
 
 /// None: its motion is not known.
-fn mover<'a>(state: &State, body: &'a PlacedBody) -> Option<Mover<'a>> {
-    let p = &state.particles;
+fn mover(state: &State, body: &PlacedBody) -> Option<FreeBody> {
     let own: BTreeSet<u32> = body
         .particles
         .iter()
@@ -80,57 +68,26 @@ fn mover<'a>(state: &State, body: &'a PlacedBody) -> Option<Mover<'a>> {
     if is_loaded || moving || own.is_empty() {
         return None;
     }
-    let (mut mass_kg, mut moment, mut momentum) = (0.0, Vector3::zeros(), Vector3::zeros());
-    let mut spin = Vector3::zeros();
-    for &i in &own {
-        let motion = &p.motions[i as usize];
-        let own_kg = 1.0 / motion.inverse_mass;
-        mass_kg += own_kg;
-        moment += own_kg * p.poses[i as usize].place();
-        momentum += own_kg * Vector3::from(motion.velocity_m_s);
-        spin += own_kg * Vector3::from(motion.spin_rad_s);
+    let own: Vec<u32> = own.into_iter().collect();
+    let mut mover = FreeBody::of_particles(state, &body.name, &own);
+    if is_held {
+        let none = Vector3::zeros();
+        mover.velocity_m_s = none;
+        mover.spin_rad_s = none;
+        mover.gravity_m_s2 = none;
     }
-    let centre_m = moment / mass_kg;
-    let spheres: Vec<(Vector3<f64>, f64)> = own
-        .iter()
-        .map(|&i| {
-            let pose = &p.poses[i as usize];
-            (pose.place() - centre_m, pose.radius_m())
-        })
-        .collect();
-    let free = if is_held { 0.0 } else { 1.0 };
-    let reach_m = spheres.iter().map(|(arm, radius_m)| arm.norm() + radius_m);
-    Some(Mover {
-        name: &body.name,
-        centre_m,
-        velocity_m_s: free * momentum / mass_kg,
-        spin_rad_s: free * spin / mass_kg,
-        gravity_m_s2: free * Vector3::from(state.model.gravity_m_s2),
-        reach_m: reach_m.fold(0.0, f64::max),
-        spheres,
-    })
+    Some(mover)
 }
 
-fn mover_of_clump<'a>(state: &'a State, clump: &Clump) -> Mover<'a> {
+fn mover_of_clump(state: &State, clump: &Clump) -> FreeBody {
     let template = state.clumps.template(clump);
-    let centre_m = Vector3::from(clump.place_m);
-    let spheres = (0..template.spheres.len()).map(|sphere| {
-        let pose = template.pose(sphere, clump);
-        (pose.place() - centre_m, template.scale * pose.radius_m())
-    });
-    Mover {
-        name: &template.body,
-        centre_m,
-        velocity_m_s: clump.velocity_m_s.into(),
-        spin_rad_s: clump.spin_rad_s(template),
-        gravity_m_s2: state.model.gravity_m_s2.into(),
-        spheres: spheres.collect(),
-        reach_m: template.largest_reach_m(),
-    }
+    let mut mover = FreeBody::of_spheres(state, clump, 0..template.spheres.len());
+    mover.reach_m = template.largest_reach_m();
+    mover
 }
 
 /// Time at which two bodies that are apart at first meet, s. None: not before `until_s`.
-fn meeting_s(one: &Mover<'_>, other: &Mover<'_>, until_s: f64) -> Option<f64> {
+fn meeting_s(one: &FreeBody, other: &FreeBody, until_s: f64) -> Option<f64> {
     let closed_m = CLOSED * one.reach_m.min(other.reach_m);
     if one.spheres.len() * other.spheres.len() > MOST_PAIRS {
         return None;
@@ -152,7 +109,7 @@ fn meeting_s(one: &Mover<'_>, other: &Mover<'_>, until_s: f64) -> Option<f64> {
         let (speed, pull) = (velocity.norm() + turning_m_s, apart.norm());
         // They meet only once the gap is closed, so they may go a little farther.
         let way_m = gap.max(0.0) + 2.0 * closed_m;
-        at_s += 2.0 * way_m / (speed + (speed * speed + 2.0 * pull * way_m).sqrt());
+        at_s += time_over(way_m, speed, pull);
         // At no speed it is NaN.
         let is_in_time = at_s <= until_s;
         if !is_in_time {
@@ -163,15 +120,13 @@ fn meeting_s(one: &Mover<'_>, other: &Mover<'_>, until_s: f64) -> Option<f64> {
 }
 
 /// Gap between the surfaces of two bodies after a time, s, in m, or a lower bound of it.
-fn gap_m(one: &Mover<'_>, other: &Mover<'_>, time_s: f64) -> f64 {
-    let centre =
-        |of: &Mover<'_>| of.centre_m + time_s * (of.velocity_m_s + 0.5 * time_s * of.gravity_m_s2);
-    let [centre_a, centre_b] = [centre(one), centre(other)];
+fn gap_m(one: &FreeBody, other: &FreeBody, time_s: f64) -> f64 {
+    let [centre_a, centre_b] = [one, other].map(|of| of.centre_after(time_s));
     let sure_m = (centre_b - centre_a).norm() - one.reach_m - other.reach_m;
     if sure_m > 0.0 {
         return sure_m;
     }
-    let placed = |of: &Mover<'_>, centre: Vector3<f64>| -> Vec<(Vector3<f64>, f64)> {
+    let placed = |of: &FreeBody, centre: Vector3<f64>| -> Vec<(Vector3<f64>, f64)> {
         let turned = UnitQuaternion::from_scaled_axis(time_s * of.spin_rad_s);
         let own = of.spheres.iter();
         own.map(|(arm, radius_m)| (centre + turned * arm, *radius_m))

@@ -27,8 +27,18 @@ impl PartialEq for Stage {
     }
 }
 
-/// For stages whose cost depends on what the bodies would do.
-pub const NO_SAVING: fn(&State) -> Option<Saving> = |_| None;
+impl Stage {
+    /// A stage that stands alone, has no arrays of its own, and whose saving is not known.
+    pub const fn new(name: &'static str, need: fn(&State, &Scene) -> Need) -> Self {
+        Self {
+            name,
+            within: None,
+            need,
+            bytes: |_| 0,
+            saving: |_| None,
+        }
+    }
+}
 
 /// Whether a scene needs a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]

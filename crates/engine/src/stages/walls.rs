@@ -15,7 +15,7 @@ pub(crate) use self::motion::{
     drift_walls, has_moved, plan_wall_motions, surface_velocity_m_s, will_move,
 };
 use super::chunks::{chunk_of, chunks_of, in_tasks};
-use super::stage::{NO_SAVING, Need, Stage};
+use super::stage::{Need, Stage};
 use crate::stages::contacts::forces::{StoredEnergy, StoredForce};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
@@ -29,19 +29,16 @@ use dem_physics::number::Vec3;
 
 /// Contacts with walls, and their motion.
 pub const WALLS: Stage = Stage {
-    name: "walls",
-    within: None,
-    need: |state, _| {
-        let walls = state.walls.len();
-        Need::of(walls > 0, || format!("{walls}"), "no walls")
-    },
     bytes: |state| {
         let of_wall = |wall: &Wall| {
             size_of_val(wall) + size_of_val(&wall.near[..]) + size_of_val(&wall.touching[..])
         };
         state.walls.iter().map(of_wall).sum()
     },
-    saving: NO_SAVING,
+    ..Stage::new("walls", |state, _| {
+        let walls = state.walls.len();
+        Need::of(walls > 0, || format!("{walls}"), "no walls")
+    })
 };
 
 /// Finds where particles touch walls, or did in the previous step. Walls that meet act as one

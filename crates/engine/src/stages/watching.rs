@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::clusters::bytes::{ClusterUser, clusters_bytes};
 use super::contacts::forces::{overlap_m, pair_force_n};
-use super::stage::{NO_SAVING, Need, Stage};
+use super::stage::{Need, Stage};
 use super::walls::{gap_m, touch_force_n};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
@@ -14,14 +14,13 @@ use crate::state::watches::{Recorded, Watch, WatchTarget, part};
 
 /// Measures, files and pictures.
 pub const OUTPUT: Stage = Stage {
-    name: "output",
-    within: None,
-    need: |_, _| Need::Needed("measures, files and pictures".to_owned()),
     bytes: |state| {
         let watched = state.watches.iter().map(|watch| watch.of.bytes());
         clusters_bytes(state, ClusterUser::Measures) + watched.sum::<usize>()
     },
-    saving: NO_SAVING,
+    ..Stage::new("output", |_, _| {
+        Need::Needed("measures, files and pictures".to_owned())
+    })
 };
 
 /// Sum of the contacts of a watched object.

@@ -76,39 +76,13 @@ pub struct EndMotion {
     pub spin_rad_s: Vector3<f64>,
 }
 
-/// Damping forces on the ends of a bond.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DampingForces {
-    /// Force on the second end, N. The first end feels the opposite.
-    pub force_on_b: Vector3<f64>,
-    /// Torques on the two ends, N m.
-    pub torques: [Vector3<f64>; 2],
-}
-
-/// Damping of a bond that is now `length_m` long along the unit vector `c` from a to b. Its contact
-/// point divides the length in the same ratio as the `levers_m` divide the initial one.
+/// Damping of one bond or several at once, with the vector `apart` from the first end to the second,
+/// m, and ends of these velocities, m/s, and spins, rad/s: force on the second end, N, and torques
+/// on both, N m. The contact point divides the length in the same ratio as the `levers_m` divide the
+/// initial one.
 ///
 /// Damping exerts no net moment on the bond, gives no force while it moves as a rigid body, and
 /// never adds energy.
-pub fn damping_forces(
-    coefficients: &DampingCoefficients,
-    levers_m: &[f64; 2],
-    c: &Vector3<f64>,
-    length_m: f64,
-    ends: &[EndMotion; 2],
-) -> DampingForces {
-    let motions = ends.map(|end| [Vec3::from(end.velocity_m_s), Vec3::from(end.spin_rad_s)]);
-    let apart = Vec3::from(length_m * c);
-    let (force_on_b, torques) = resistance(coefficients, *levers_m, apart, motions);
-    DampingForces {
-        force_on_b: force_on_b.into(),
-        torques: torques.map(Vector3::from),
-    }
-}
-
-/// As [`damping_forces`], for one bond or several at once, with the vector `apart` from the first
-/// end to the second, m, and ends of these velocities, m/s, and spins, rad/s: force on the second
-/// end, N, and torques on both, N m.
 #[inline(always)]
 pub fn resistance<T: Number>(
     coefficients: &DampingCoefficients<T>,

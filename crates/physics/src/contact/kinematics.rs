@@ -136,20 +136,6 @@ pub fn wall_contact_kinematics<T: Number>(
     }
 }
 
-/// Velocity of b's surface relative to a's at the present contact point, m/s, for ends with these
-/// velocities and spins (a first).
-///
-/// For a wall: the velocity of its surface there.
-#[inline(always)]
-pub fn relative_velocity<T: Number>(
-    touch: &ContactKinematics<T>,
-    [velocity_a, velocity_b]: [Vec3<T>; 2],
-    [spin_a, spin_b]: [Vec3<T>; 2],
-) -> Vec3<T> {
-    let [lever_a, lever_b] = touch.levers_m;
-    velocity_b - velocity_a - (spin_a * lever_a + spin_b * lever_b).cross(touch.normal)
-}
-
 /// Torques on a and b about their centres, N m, from a force on b at the contact point, N, and a
 /// moment on b, N m.
 ///

@@ -1,124 +1,30 @@
 //! Four numbers at once, for processors with AVX2.
 
 use std::arch::x86_64::__m256d;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use pulp::cast;
 use pulp::x86::V3;
 
 use super::common::{FOUR, Lanes, MOST};
-use crate::number::Number;
+use super::register::lanes_in_register;
 
-/// Four numbers in an AVX2 register.
-#[derive(Clone, Copy)]
-pub(super) struct Lanes4 {
-    simd: V3,
-    v: __m256d,
+lanes_in_register! {
+    /// Four numbers in an AVX2 register.
+    Lanes4: __m256d of V3,
+    numbers: avx { sqrt: _mm256_sqrt_pd, max: _mm256_max_pd, min: _mm256_min_pd, },
+    operators: {
+        Add::add: _mm256_add_pd,
+        Sub::sub: _mm256_sub_pd,
+        Mul::mul: _mm256_mul_pd,
+        Div::div: _mm256_div_pd,
+    },
+    bits: avx { xor: _mm256_xor_pd, and: _mm256_and_pd, or: _mm256_or_pd, },
 }
 
 impl Lanes4 {
     #[inline(always)]
-    fn with(self, v: __m256d) -> Self {
-        Self { simd: self.simd, v }
-    }
-
-    #[inline(always)]
-    fn constant(self, value: f64) -> __m256d {
-        self.simd.avx._mm256_set1_pd(value)
-    }
-}
-
-impl Add for Lanes4 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.with(self.simd.avx._mm256_add_pd(self.v, other.v))
-    }
-}
-
-impl Sub for Lanes4 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.with(self.simd.avx._mm256_sub_pd(self.v, other.v))
-    }
-}
-
-impl Mul for Lanes4 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.with(self.simd.avx._mm256_mul_pd(self.v, other.v))
-    }
-}
-
-impl Div for Lanes4 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self.with(self.simd.avx._mm256_div_pd(self.v, other.v))
-    }
-}
-
-impl Neg for Lanes4 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        let sign = self.constant(-0.0);
-        self.with(self.simd.avx._mm256_xor_pd(self.v, sign))
-    }
-}
-
-impl Number for Lanes4 {
-    #[inline(always)]
-    fn zero(self) -> Self {
-        self.with(self.constant(0.0))
-    }
-
-    #[inline(always)]
-    fn scale(self, factor: f64) -> Self {
-        self.with(self.simd.avx._mm256_mul_pd(self.v, self.constant(factor)))
-    }
-
-    #[inline(always)]
-    fn plus(self, term: f64) -> Self {
-        self.with(self.simd.avx._mm256_add_pd(self.v, self.constant(term)))
-    }
-
-    #[inline(always)]
-    fn inverse(self) -> Self {
-        self.with(self.simd.avx._mm256_div_pd(self.constant(1.0), self.v))
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.with(self.simd.avx._mm256_sqrt_pd(self.v))
-    }
-
-    #[inline(always)]
-    fn maximum(self, other: Self) -> Self {
-        self.with(self.simd.avx._mm256_max_pd(self.v, other.v))
-    }
-
-    #[inline(always)]
-    fn minimum(self, other: Self) -> Self {
-        self.with(self.simd.avx._mm256_min_pd(self.v, other.v))
-    }
-
-    #[inline(always)]
-    fn sign(self) -> Self {
-        let sign = self.simd.avx._mm256_and_pd(self.v, self.constant(-0.0));
-        self.with(self.simd.avx._mm256_or_pd(sign, self.constant(1.0)))
-    }
-
-    #[inline(always)]
-    fn if_positive(self, value: Self) -> Self {
-        let zero = self.constant(0.0);
+    fn where_positive(self, value: Self) -> Self {
+        let zero = self.constant(0.0).v;
         let positive = self
             .simd
             .avx

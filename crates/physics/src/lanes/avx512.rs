@@ -1,130 +1,31 @@
 //! Eight numbers at once, for processors with AVX-512.
 
 use std::arch::x86_64::{__m512d, __m512i};
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use pulp::cast;
 use pulp::x86::V4;
 
 use super::common::{Lanes, MOST};
-use crate::number::Number;
+use super::register::lanes_in_register;
 
-/// Eight numbers in an AVX-512 register.
-#[derive(Clone, Copy)]
-pub(super) struct Lanes8 {
-    simd: V4,
-    v: __m512d,
+lanes_in_register! {
+    /// Eight numbers in an AVX-512 register.
+    Lanes8: __m512d of V4,
+    numbers: avx512f { sqrt: _mm512_sqrt_pd, max: _mm512_max_pd, min: _mm512_min_pd, },
+    operators: {
+        Add::add: _mm512_add_pd,
+        Sub::sub: _mm512_sub_pd,
+        Mul::mul: _mm512_mul_pd,
+        Div::div: _mm512_div_pd,
+    },
+    bits: avx512dq { xor: _mm512_xor_pd, and: _mm512_and_pd, or: _mm512_or_pd, },
 }
 
 impl Lanes8 {
     #[inline(always)]
-    fn with(self, v: __m512d) -> Self {
-        Self { simd: self.simd, v }
-    }
-
-    #[inline(always)]
-    fn constant(self, value: f64) -> __m512d {
-        self.simd.avx512f._mm512_set1_pd(value)
-    }
-}
-
-impl Add for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.with(self.simd.avx512f._mm512_add_pd(self.v, other.v))
-    }
-}
-
-impl Sub for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.with(self.simd.avx512f._mm512_sub_pd(self.v, other.v))
-    }
-}
-
-impl Mul for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.with(self.simd.avx512f._mm512_mul_pd(self.v, other.v))
-    }
-}
-
-impl Div for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self.with(self.simd.avx512f._mm512_div_pd(self.v, other.v))
-    }
-}
-
-impl Neg for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        let sign = self.constant(-0.0);
-        self.with(self.simd.avx512dq._mm512_xor_pd(self.v, sign))
-    }
-}
-
-impl Number for Lanes8 {
-    #[inline(always)]
-    fn zero(self) -> Self {
-        self.with(self.constant(0.0))
-    }
-
-    #[inline(always)]
-    fn scale(self, factor: f64) -> Self {
-        self.with(
-            self.simd
-                .avx512f
-                ._mm512_mul_pd(self.v, self.constant(factor)),
-        )
-    }
-
-    #[inline(always)]
-    fn plus(self, term: f64) -> Self {
-        self.with(self.simd.avx512f._mm512_add_pd(self.v, self.constant(term)))
-    }
-
-    #[inline(always)]
-    fn inverse(self) -> Self {
-        self.with(self.simd.avx512f._mm512_div_pd(self.constant(1.0), self.v))
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.with(self.simd.avx512f._mm512_sqrt_pd(self.v))
-    }
-
-    #[inline(always)]
-    fn maximum(self, other: Self) -> Self {
-        self.with(self.simd.avx512f._mm512_max_pd(self.v, other.v))
-    }
-
-    #[inline(always)]
-    fn minimum(self, other: Self) -> Self {
-        self.with(self.simd.avx512f._mm512_min_pd(self.v, other.v))
-    }
-
-    #[inline(always)]
-    fn sign(self) -> Self {
-        let dq = self.simd.avx512dq;
-        let sign = dq._mm512_and_pd(self.v, self.constant(-0.0));
-        self.with(dq._mm512_or_pd(sign, self.constant(1.0)))
-    }
-
-    #[inline(always)]
-    fn if_positive(self, value: Self) -> Self {
+    fn where_positive(self, value: Self) -> Self {
         let avx = self.simd.avx512f;
-        let zero = self.constant(0.0);
+        let zero = self.constant(0.0).v;
         let positive = avx._mm512_cmp_pd_mask::<{ std::arch::x86_64::_CMP_GT_OQ }>(self.v, zero);
         self.with(avx._mm512_maskz_mov_pd(positive, value.v))
     }

@@ -3,13 +3,13 @@
 
 use super::vector;
 use dem_physics::bond::damping::{
-    DampingCoefficients, DampingForces, DampingModel, EndMotion, ReducedInertia, damping_forces,
-    reduced,
+    DampingCoefficients, DampingModel, EndMotion, ReducedInertia, reduced, resistance,
 };
 use dem_physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_physics::bond::total::{End, bond_forces};
 use dem_physics::chebyshev::Chebyshev;
+use dem_physics::number::Vec3;
 use nalgebra::{DMatrix, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -36,6 +36,29 @@ fn coefficients() -> impl Strategy<Value = DampingCoefficients> {
             bending,
         }
     })
+}
+
+/// Force on the second end, N, and torques on both, N m.
+struct DampingForces {
+    force_on_b: Vector3<f64>,
+    torques: [Vector3<f64>; 2],
+}
+
+/// Damping of a bond that is now `length_m` long along the unit vector `c` from a to b.
+fn damping_forces(
+    coefficients: &DampingCoefficients,
+    levers_m: &[f64; 2],
+    c: &Vector3<f64>,
+    length_m: f64,
+    ends: &[EndMotion; 2],
+) -> DampingForces {
+    let motions = ends.map(|end| [Vec3::from(end.velocity_m_s), Vec3::from(end.spin_rad_s)]);
+    let apart = Vec3::from(length_m * c);
+    let (force_on_b, torques) = resistance(coefficients, *levers_m, apart, motions);
+    DampingForces {
+        force_on_b: force_on_b.into(),
+        torques: torques.map(Vector3::from),
+    }
 }
 
 /// Scale of rounding errors: coefficients, speeds and levers are of the order 1 to 10.

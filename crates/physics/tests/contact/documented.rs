@@ -2,7 +2,7 @@
 
 use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::kinematics::{
-    ContactKinematics, ContactSphere, WallPoint, contact_kinematics, relative_velocity, torques,
+    ContactKinematics, ContactSphere, WallPoint, contact_kinematics, torques,
     wall_contact_kinematics,
 };
 use dem_physics::contact::linear::Linear;
@@ -13,6 +13,7 @@ use dem_physics::number::Vec3;
 use nalgebra::Vector3;
 
 use super::assert_near;
+use super::world::relative_velocity;
 
 const PAGE: &str = include_str!("../../../../doc/contacts.md");
 const OVERLAP_M: f64 = 2e-5;

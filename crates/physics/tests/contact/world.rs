@@ -1,7 +1,7 @@
 //! Two touching bodies, integrated by leapfrog, with their energy balance.
 
 use dem_physics::contact::kinematics::{
-    ContactKinematics, ContactSphere, WallPoint, contact_kinematics, relative_velocity, torques,
+    ContactKinematics, ContactSphere, WallPoint, contact_kinematics, torques,
     wall_contact_kinematics,
 };
 use dem_physics::contact::pair_parameters::{Elastic, PairInput};
@@ -13,6 +13,19 @@ use std::f64::consts::PI;
 pub(crate) type Vector = Vec3<f64>;
 pub(crate) const ZERO: Vector = Vec3(0.0, 0.0, 0.0);
 pub(crate) const Z: Vector = Vec3(0.0, 0.0, 1.0);
+
+/// Velocity of b's surface relative to a's at the present contact point, m/s, for ends with these
+/// velocities and spins (a first).
+///
+/// For a wall: the velocity of its surface there.
+pub(crate) fn relative_velocity(
+    touch: &ContactKinematics,
+    [velocity_a, velocity_b]: [Vector; 2],
+    [spin_a, spin_b]: [Vector; 2],
+) -> Vector {
+    let [lever_a, lever_b] = touch.levers_m;
+    velocity_b - velocity_a - (spin_a * lever_a + spin_b * lever_b).cross(touch.normal)
+}
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Body {

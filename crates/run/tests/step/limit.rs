@@ -7,8 +7,9 @@ use crate::bars::{
 use dem_engine::check::limit::{bound_near, limit};
 use dem_engine::state::State;
 use dem_engine::state::particles::Particles;
-use dem_physics::bond::damping::{DampingCoefficients, EndMotion, damping_forces};
+use dem_physics::bond::damping::{DampingCoefficients, resistance};
 use dem_physics::bond::stiffness::BondModel;
+use dem_physics::number::Vec3;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -73,13 +74,9 @@ fn damping_1_s(state: &State) -> f64 {
             let motions = ends.map(|i| {
                 let scaled =
                     |first| Vector3::from_fn(|k, _| root(i, first + k) * field[i][first + k]);
-                EndMotion {
-                    velocity_m_s: scaled(0),
-                    spin_rad_s: scaled(3),
-                }
+                [scaled(0), scaled(3)].map(Vec3::from)
             });
             let apart = p.poses[ends[1]].place() - p.poses[ends[0]].place();
-            let length = apart.norm();
             let [normal, shear, torsion, bending] = bonds.damping[at];
             let d = DampingCoefficients {
                 normal,
@@ -88,12 +85,14 @@ fn damping_1_s(state: &State) -> f64 {
                 bending,
             };
             let levers = bonds.levers_m(at);
-            let found = damping_forces(&d, &levers, &(apart / length), length, &motions);
+            let (force_on_b, torques) = resistance(&d, levers, Vec3::from(apart), motions);
+            let force_on_b = Vector3::from(force_on_b);
+            let torques = torques.map(Vector3::from);
             for (end, sign) in [(0, 1.0), (1, -1.0)] {
                 let i = ends[end];
                 for k in 0..3 {
-                    image[i][k] += sign * root(i, k) * found.force_on_b[k];
-                    image[i][3 + k] -= root(i, 3 + k) * found.torques[end][k];
+                    image[i][k] += sign * root(i, k) * force_on_b[k];
+                    image[i][3 + k] -= root(i, 3 + k) * torques[end][k];
                 }
             }
         }

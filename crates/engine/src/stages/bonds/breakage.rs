@@ -3,7 +3,7 @@
 
 use super::damage::{Loss, growth_of, is_crushed, softened};
 use super::forces::{any_bond, bonds_to_come};
-use crate::stages::stage::{NO_SAVING, Need, Saving, Stage};
+use crate::stages::stage::{Need, Saving, Stage};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::events::{Break, Events};
@@ -18,56 +18,49 @@ const SCATTER_NS: f64 = 1.2;
 
 /// Comparison of bonds with their strength.
 pub const FAILURE: Stage = Stage {
-    name: "failure",
-    within: None,
-    need: |state, _| {
+    saving: |state| Saving::of(state.bonds.len(), 0, FAILURE_NS),
+    ..Stage::new("failure", |state, _| {
         Need::of(
             state.bonds.rules.iter().any(|rule| rule.criteria.is_some()),
             || "bonds have strengths".to_owned(),
             "no bond has a strength",
         )
-    },
-    bytes: |_| 0,
-    saving: |state| Saving::of(state.bonds.len(), 0, FAILURE_NS),
+    })
 };
 
 /// Strengths that depend on the strain rate.
 pub const RATES: Stage = Stage {
-    name: "rate strengthening",
     within: Some(FAILURE.name),
-    need: |state, _| {
+    ..Stage::new("rate strengthening", |state, _| {
         Need::of(
             state.bonds.strengthen_with_rate(),
             || "only for bonds that would break without it".to_owned(),
             "no rate strengthening asked for",
         )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
+    })
 };
 
 /// Bonds that soften beyond their strength.
 pub(crate) const DAMAGE: Stage = Stage {
-    name: "damage of bonds",
     within: Some(FAILURE.name),
-    need: |state, _| {
+    bytes: |state| {
+        size_of_val(&state.bonds.histories.damages[..]) + size_of_val(&state.bonds.damaged[..])
+    },
+    ..Stage::new("damage of bonds", |state, _| {
         Need::of(
             any_bond(state, |rule| rule.law.fracture_energy_j_m2().is_some()),
             || "bonds have a fracture energy".to_owned(),
             "no bond has a fracture energy",
         )
-    },
-    bytes: |state| {
-        size_of_val(&state.bonds.histories.damages[..]) + size_of_val(&state.bonds.damaged[..])
-    },
-    saving: NO_SAVING,
+    })
 };
 
 /// Strengths that vary from bond to bond.
 pub const SCATTER: Stage = Stage {
-    name: "strength scatter",
     within: Some(FAILURE.name),
-    need: |state, _| {
+    bytes: |state| size_of_val(&state.bonds.strength_factors[..]),
+    saving: |state| Saving::of(state.bonds.len(), size_of::<f64>(), SCATTER_NS),
+    ..Stage::new("strength scatter", |state, _| {
         let mut templates = state.clumps.templates.iter();
         let will_be = bonds_to_come(state) > 0 && templates.any(|t| t.scatter.is_some());
         Need::of(
@@ -75,16 +68,13 @@ pub const SCATTER: Stage = Stage {
             || "a factor for each bond".to_owned(),
             "no Weibull modulus given",
         )
-    },
-    bytes: |state| size_of_val(&state.bonds.strength_factors[..]),
-    saving: |state| Saving::of(state.bonds.len(), size_of::<f64>(), SCATTER_NS),
+    })
 };
 
 /// Strengths that rise with pressure.
 pub const FRICTION: Stage = Stage {
-    name: "friction of bonds",
     within: Some(FAILURE.name),
-    need: |state, _| {
+    ..Stage::new("friction of bonds", |state, _| {
         Need::of(
             any_bond(state, |rule| {
                 rule.criteria
@@ -93,9 +83,7 @@ pub const FRICTION: Stage = Stage {
             || "bonds have a cohesion and a friction angle".to_owned(),
             "no bond has a cohesion",
         )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
+    })
 };
 
 /// Breaks the bonds that have reached their strength. Returns the number of bonds compared with

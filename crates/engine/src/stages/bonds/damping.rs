@@ -79,15 +79,6 @@ const ONE_STAGE_IF_CHANGING: f64 = 0.5;
 
 /// Damping of bonds.
 pub const BOND_DAMPING: Stage = Stage {
-    name: "bond damping",
-    within: None,
-    need: |state, _| {
-        Need::of(
-            any_bond(state, BondRule::is_damped),
-            || "bonds are damped".to_owned(),
-            "no bond is damped: no relative velocities",
-        )
-    },
     bytes: |state| {
         let stages = state.scratch.damping_stages.iter();
         let predicted = state.scratch.predicted.iter();
@@ -108,6 +99,13 @@ pub const BOND_DAMPING: Stage = Stage {
             ..of_bonds
         })
     },
+    ..Stage::new("bond damping", |state, _| {
+        Need::of(
+            any_bond(state, BondRule::is_damped),
+            || "bonds are damped".to_owned(),
+            "no bond is damped: no relative velocities",
+        )
+    })
 };
 
 /// Weight q of the running mean of damping in that of the next step, for this largest eigenvalue of

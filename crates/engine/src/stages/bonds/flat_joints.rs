@@ -6,7 +6,7 @@ use super::damage::{earlier, power_w};
 use super::forces::any_bond;
 use crate::stages::bonds::one_by_one::add_single_wrenches;
 use crate::stages::chunks::CHUNK;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::bonds::histories::column_bytes;
@@ -15,17 +15,14 @@ use dem_physics::bond::flat_joint::{Change, Element, change};
 
 /// Bonds whose section consists of elements.
 pub(crate) const FLAT_JOINTS: Stage = Stage {
-    name: "flat joints",
-    within: None,
-    need: |state, _| {
+    bytes: |state| column_bytes(&state.bonds.histories.joints),
+    ..Stage::new("flat joints", |state, _| {
         Need::of(
             any_bond(state, |rule| rule.law.flat_joint().is_some()),
             || "bonds are flat joints".to_owned(),
             "no bond is a flat joint",
         )
-    },
-    bytes: |state| column_bytes(&state.bonds.histories.joints),
-    saving: NO_SAVING,
+    })
 };
 
 /// Lets elements fail and slide, and adds the forces of all flat joints to the wrenches. Returns

@@ -8,7 +8,7 @@ use crate::stages::bonds::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon_of, for_each_partition, separations,
 };
 use crate::stages::chunks::CHUNK;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
@@ -23,20 +23,6 @@ use LaneChoice::{AsManyLanes, OneLane};
 
 /// Bond forces.
 pub const BONDS: Stage = Stage {
-    name: "bond forces",
-    within: None,
-    need: |state, _| {
-        let now = state.bonds.len();
-        let of_clumps = bonds_of_clumps(state);
-        if bonds_to_come(state) == 0 && of_clumps > 0 {
-            return Need::of(now > 0, || bonds_text(now), "clumps are never replaced");
-        }
-        let why = || match of_clumps {
-            0 => bonds_text(now),
-            _ => format!("{now} bonds at the start; those of a clump, once it is replaced"),
-        };
-        Need::of(now + bonds_to_come(state) > 0, why, "no body has bonds")
-    },
     bytes: |state| {
         let batches = state
             .scratch
@@ -47,7 +33,18 @@ pub const BONDS: Stage = Stage {
             + size_of_val(&state.bonds.blocks[..])
             + batches.map(|batch| 4 * batch.which.listed()).sum::<usize>()
     },
-    saving: NO_SAVING,
+    ..Stage::new("bond forces", |state, _| {
+        let now = state.bonds.len();
+        let of_clumps = bonds_of_clumps(state);
+        if bonds_to_come(state) == 0 && of_clumps > 0 {
+            return Need::of(now > 0, || bonds_text(now), "clumps are never replaced");
+        }
+        let why = || match of_clumps {
+            0 => bonds_text(now),
+            _ => format!("{now} bonds at the start; those of a clump, once it is replaced"),
+        };
+        Need::of(now + bonds_to_come(state) > 0, why, "no body has bonds")
+    })
 };
 
 fn bonds_text(count: usize) -> String {

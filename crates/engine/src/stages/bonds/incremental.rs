@@ -16,15 +16,6 @@ const HISTORY_NS: f64 = 37.6;
 
 /// Histories of bonds of the incremental formulation, and their forces.
 pub const HISTORIES: Stage = Stage {
-    name: "bond history",
-    within: None,
-    need: |state, _| {
-        Need::of(
-            any_bond(state, |rule| rule.law == BondLaw::Incremental),
-            || "bonds of the incremental formulation".to_owned(),
-            "every bond has the total formulation",
-        )
-    },
     bytes: |state| size_of_val(&state.bonds.histories.sums[..]),
     saving: |state| {
         Saving::of(
@@ -33,6 +24,13 @@ pub const HISTORIES: Stage = Stage {
             HISTORY_NS,
         )
     },
+    ..Stage::new("bond history", |state, _| {
+        Need::of(
+            any_bond(state, |rule| rule.law == BondLaw::Incremental),
+            || "bonds of the incremental formulation".to_owned(),
+            "every bond has the total formulation",
+        )
+    })
 };
 
 /// Updates the histories and adds their forces to the wrenches. Returns the number of bonds

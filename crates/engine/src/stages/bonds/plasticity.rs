@@ -6,7 +6,7 @@ use super::damage::{earlier, power_w};
 use super::forces::any_bond;
 use crate::stages::bonds::one_by_one::add_single_wrenches;
 use crate::stages::chunks::CHUNK;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Particles, Pose, Wrench};
@@ -16,17 +16,14 @@ use dem_physics::bond::total::bond_forces;
 
 /// Bonds that are elastic up to their yield strength.
 pub(crate) const PLASTICITY: Stage = Stage {
-    name: "elasto-plastic bonds",
-    within: None,
-    need: |state, _| {
+    bytes: |state| size_of_val(&state.bonds.histories.plastics[..]),
+    ..Stage::new("elasto-plastic bonds", |state, _| {
         Need::of(
             any_bond(state, |rule| rule.law.plasticity().is_some()),
             || "bonds have a yield strength".to_owned(),
             "no bond has a yield strength",
         )
-    },
-    bytes: |state| size_of_val(&state.bonds.histories.plastics[..]),
-    saving: NO_SAVING,
+    })
 };
 
 /// Lets the bonds flow that have reached their yield strength, and adds the forces of all bonds

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::damping::predict_as_damped_before;
 use super::forces::any_bond;
 use crate::stages::chunks::CHUNK;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Particles};
@@ -20,17 +20,14 @@ use dem_physics::bond::damping::{DampingCoefficients, EndMotion};
 
 /// Structural damping of bonds.
 pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
-    name: "structural damping",
-    within: None,
-    need: |state, _| {
+    bytes: |state| size_of_val(&state.scratch.damping_now[..]),
+    ..Stage::new("structural damping", |state, _| {
         Need::of(
             any_bond(state, |rule| rule.structural_damping > 0.0),
             || "bonds resist relative motion with a fraction of their load".to_owned(),
             "not asked for",
         )
-    },
-    bytes: |state| size_of_val(&state.scratch.damping_now[..]),
-    saving: NO_SAVING,
+    })
 };
 
 /// Sets the coefficients of damping of this step. Returns the number of bonds with structural

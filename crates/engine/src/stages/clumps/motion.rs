@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use rayon::prelude::*;
 
 use crate::stages::clusters::bytes::{ClusterUser, clusters_bytes};
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::clumps::Template;
 use crate::state::clumps::{Clump, Clumps};
@@ -21,9 +21,13 @@ const CHUNK: usize = 32;
 
 /// Rigid clumps.
 pub(crate) const CLUMPS: Stage = Stage {
-    name: "rigid clumps",
-    within: None,
-    need: |state, _| {
+    bytes: |state| {
+        clusters_bytes(state, ClusterUser::Clumps)
+            + size_of::<Clump>() * state.clumps.all.len()
+            + size_of_val(&state.clumps.near[..])
+            + Template::bytes_of(&state.clumps.templates)
+    },
+    ..Stage::new("rigid clumps", |state, _| {
         let templates = &state.clumps.templates;
         let sum = |count: fn(&Template) -> usize| templates.iter().map(|t| count(t)).sum::<usize>();
         let (spheres, outer) = (sum(|t| t.spheres.len()), sum(|t| t.outer.len()));
@@ -44,14 +48,7 @@ pub(crate) const CLUMPS: Stage = Stage {
             },
             "no body starts as a clump",
         )
-    },
-    bytes: |state| {
-        clusters_bytes(state, ClusterUser::Clumps)
-            + size_of::<Clump>() * state.clumps.all.len()
-            + size_of_val(&state.clumps.near[..])
-            + Template::bytes_of(&state.clumps.templates)
-    },
-    saving: NO_SAVING,
+    })
 };
 
 /// Sums the contact forces on the spheres of clumps.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::contact_stress::find_squeezes;
 use crate::stages::population::change::apply_topology_change;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::clump_stress::Squeeze;
 use crate::state::clumps::Clump;
@@ -13,46 +13,37 @@ use crate::state::events::{PopulationEvent, STARTS_BONDED};
 use crate::state::rules::Trigger;
 
 /// Clumps that become clusters, and clusters that become clumps.
-pub(crate) const REPLACEMENT: Stage = Stage {
-    name: "replacement",
-    within: None,
-    need: |state, _| {
-        let rules = &state.model.rules;
-        let replaces = rules.triggers.iter().any(Option::is_some);
-        let mut starts = rules.starts.iter();
-        let starts = !rules.are_none() && starts.any(|start| start.bonded || start.sphere);
-        Need::of(
-            starts || replaces,
-            || {
-                let of_starts = "new bodies start as bonded clusters or single spheres";
-                let text = if replaces {
-                    "clumps become bonded clusters"
-                } else {
-                    of_starts
-                };
-                text.to_owned()
-            },
-            "no clump can become a cluster",
-        )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
-};
+pub(crate) const REPLACEMENT: Stage = Stage::new("replacement", |state, _| {
+    let rules = &state.model.rules;
+    let replaces = rules.triggers.iter().any(Option::is_some);
+    let mut starts = rules.starts.iter();
+    let starts = !rules.are_none() && starts.any(|start| start.bonded || start.sphere);
+    Need::of(
+        starts || replaces,
+        || {
+            let of_starts = "new bodies start as bonded clusters or single spheres";
+            let text = if replaces {
+                "clumps become bonded clusters"
+            } else {
+                of_starts
+            };
+            text.to_owned()
+        },
+        "no clump can become a cluster",
+    )
+});
 
 /// Contacts that triggers by single forces or stress read.
 pub(crate) const SQUEEZE: Stage = Stage {
-    name: "squeeze of clumps",
     within: Some(REPLACEMENT.name),
-    need: |state, _| {
+    ..Stage::new("squeeze of clumps", |state, _| {
         let mut triggers = state.model.rules.triggers.iter().flatten();
         Need::of(
             state.contacts.is_some() && triggers.any(|trigger| trigger.needs_squeeze()),
             || "a trigger reads the forces of single contacts".to_owned(),
             "no trigger reads the forces of single contacts",
         )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
+    })
 };
 
 /// The conditions of a trigger, in the order in which they are asked.

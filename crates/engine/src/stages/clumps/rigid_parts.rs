@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::stages::chunks::CHUNK;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
@@ -16,9 +16,8 @@ use dem_physics::rotation::rotation as rotation_of;
 
 /// Rigid parts of bonded bodies.
 pub(crate) const RIGID_PARTS: Stage = Stage {
-    name: "rigid parts",
-    within: None,
-    need: |state, _| {
+    bytes: |state| state.rigid_parts.bytes(),
+    ..Stage::new("rigid parts", |state, _| {
         let (zones, parts) = (state.model.rules.zones.len(), &state.rigid_parts);
         Need::of(
             zones > 0,
@@ -32,9 +31,7 @@ pub(crate) const RIGID_PARTS: Stage = Stage {
             },
             "no body is bonded in a region only",
         )
-    },
-    bytes: |state| state.rigid_parts.bytes(),
-    saving: NO_SAVING,
+    })
 };
 
 /// Sums the forces on the spheres of rigid parts, and replaces them by those with which the spheres

@@ -11,7 +11,7 @@
 use dem_io::disjoint::{find, join};
 
 use crate::stages::ledger::totals::synchronous_motions;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::events::ZoneEvent;
 use crate::state::particles::Particles;
@@ -22,20 +22,14 @@ use crate::state::rules::{Rejoin, Zone};
 const EVERY: u64 = 50;
 
 /// Bonded zones of bodies that are rigid elsewhere.
-pub(crate) const ZONES: Stage = Stage {
-    name: "bonded zones",
-    within: None,
-    need: |state, _| {
-        let zones = state.model.rules.zones.len();
-        Need::of(
-            zones > 0,
-            || format!("of {zones} bodies, looked at every {EVERY} steps"),
-            "no body is bonded in a region only",
-        )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
-};
+pub(crate) const ZONES: Stage = Stage::new("bonded zones", |state, _| {
+    let zones = state.model.rules.zones.len();
+    Need::of(
+        zones > 0,
+        || format!("of {zones} bodies, looked at every {EVERY} steps"),
+        "no body is bonded in a region only",
+    )
+});
 
 /// Forms the rigid parts of all bodies at the start.
 pub fn form_rigid_parts(state: &mut State) {

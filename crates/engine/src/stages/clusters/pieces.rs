@@ -2,25 +2,22 @@
 
 use super::bytes::{ClusterUser, clusters_bytes};
 use crate::stages::bonds::forces::any_bond;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::clusters::Clusters;
 use crate::state::contacts::Contacts;
 
 /// The search for fragments.
 pub(crate) const CLUSTERS: Stage = Stage {
-    name: "cluster search",
-    within: None,
-    need: |state, _| {
+    bytes: |state| clusters_bytes(state, ClusterUser::Fragments),
+    ..Stage::new("cluster search", |state, _| {
         let breaks = state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
         Need::of(
             state.clusters.is_some() && breaks && any_bond(state, |_| true),
             || "in each step in which a bond has broken".to_owned(),
             "no bond can break",
         )
-    },
-    bytes: |state| clusters_bytes(state, ClusterUser::Fragments),
-    saving: NO_SAVING,
+    })
 };
 
 /// Searches for the fragments of the pieces in which bonds have broken in this step. Returns the

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use crate::stages::chunks::CHUNK;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::SAME_WAY;
 use crate::state::State;
 use crate::state::bridges::{BridgeScratch, Bridges, PairBridge, Stepped, WallBridge};
@@ -17,21 +17,18 @@ use dem_physics::geometry::one_surface::is_one;
 
 /// Liquid bridges.
 pub(crate) const BRIDGES: Stage = Stage {
-    name: "liquid bridges",
-    within: None,
-    need: |state, _| {
-        Need::of(
-            state.bridges.is_some(),
-            || "materials are wet".to_owned(),
-            "no materials are wet",
-        )
-    },
     bytes: |state| {
         state.bridges.as_ref().map_or(0, |bridges| {
             size_of_val(&bridges.pairs[..]) + size_of_val(&bridges.walls[..])
         })
     },
-    saving: NO_SAVING,
+    ..Stage::new("liquid bridges", |state, _| {
+        Need::of(
+            state.bridges.is_some(),
+            || "materials are wet".to_owned(),
+            "no materials are wet",
+        )
+    })
 };
 
 /// Forms and ruptures bridges, and adds their forces to the wrenches. Returns their number.

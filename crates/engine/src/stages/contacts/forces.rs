@@ -21,7 +21,7 @@ use self::kernel::{PartitionOutput, for_each};
 use crate::stages::bonds::blocks::{rows, vectors};
 use crate::stages::bonds::forces::any_bond;
 use crate::stages::search::neighbours::near_pairs;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
@@ -35,9 +35,19 @@ use dem_physics::number::Vec3;
 
 /// Contacts between particles.
 pub const CONTACTS: Stage = Stage {
-    name: "particle contacts",
-    within: None,
-    need: |state, scene| {
+    bytes: |state| {
+        state.contacts.as_ref().map_or(0, |c| {
+            let of_partitions = c.scratch.partitions.iter().map(|partition| {
+                size_of_val(&partition.border[..])
+                    + size_of_val(&partition.border_histories[..])
+                    + partition.was_close.len()
+            });
+            size_of_val(&c.histories[..])
+                + size_of_val(&c.scratch.former_histories[..])
+                + of_partitions.sum::<usize>()
+        })
+    },
+    ..Stage::new("particle contacts", |state, scene| {
         let pieces = state.clusters.as_ref().map_or(0, |c| c.living().count());
         let why_not = if state.contacts.is_some() {
             "there is one body, and no bond can break"
@@ -54,27 +64,13 @@ pub const CONTACTS: Stage = Stage {
             },
             why_not,
         )
-    },
-    bytes: |state| {
-        state.contacts.as_ref().map_or(0, |c| {
-            let of_partitions = c.scratch.partitions.iter().map(|partition| {
-                size_of_val(&partition.border[..])
-                    + size_of_val(&partition.border_histories[..])
-                    + partition.was_close.len()
-            });
-            size_of_val(&c.histories[..])
-                + size_of_val(&c.scratch.former_histories[..])
-                + of_partitions.sum::<usize>()
-        })
-    },
-    saving: NO_SAVING,
+    })
 };
 
 /// Overlaps of fragments as they separate.
 pub const RELAXATION: Stage = Stage {
-    name: "relaxation",
     within: Some(CONTACTS.name),
-    need: |state, scene| {
+    ..Stage::new("relaxation", |state, scene| {
         let relaxes = state
             .contacts
             .as_ref()
@@ -89,16 +85,13 @@ pub const RELAXATION: Stage = Stage {
             || "overlaps of pieces that part are where their contact begins".to_owned(),
             why_not,
         )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
+    })
 };
 
 /// Rolling friction of contacts.
 pub const ROLLING: Stage = Stage {
-    name: "rolling friction",
     within: Some(CONTACTS.name),
-    need: |state, scene| {
+    ..Stage::new("rolling friction", |state, scene| {
         let mut contacts = scene.contacts.iter();
         let rolls = contacts.any(|c| c.rolling != Rolling::Free);
         Need::of(
@@ -106,9 +99,7 @@ pub const ROLLING: Stage = Stage {
             || "materials have it".to_owned(),
             "no materials have it",
         )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
+    })
 };
 
 /// Whether particles of different pieces can touch each other.

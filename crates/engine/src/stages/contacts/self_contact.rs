@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use super::forces::overlap_m;
 use crate::stages::chunks::{CHUNK, chunk_of, chunks_of};
 use crate::stages::search::neighbours::near_pairs;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clusters::Clusters;
@@ -47,9 +47,15 @@ const SOON: f64 = 0.5;
 
 /// Contacts within pieces.
 pub(crate) const SELF_CONTACT: Stage = Stage {
-    name: "contacts within pieces",
-    within: None,
-    need: |state, scene| {
+    bytes: |state| {
+        state.contacts.as_ref().map_or(0, |contacts| {
+            let own = &contacts.scratch.self_contacts;
+            size_of_val(&own.pairs[..])
+                + size_of_val(&own.places_m[..])
+                + size_of_val(&own.chunks_left_m[..])
+        })
+    },
+    ..Stage::new("contacts within pieces", |state, scene| {
         let why_not = if !scene.clusters.self_contact {
             "switched off: spheres of one piece never touch"
         } else if state.bonds.is_empty()
@@ -64,16 +70,7 @@ pub(crate) const SELF_CONTACT: Stage = Stage {
             || "once spheres that no bond joins may have come near each other".to_owned(),
             why_not,
         )
-    },
-    bytes: |state| {
-        state.contacts.as_ref().map_or(0, |contacts| {
-            let own = &contacts.scratch.self_contacts;
-            size_of_val(&own.pairs[..])
-                + size_of_val(&own.places_m[..])
-                + size_of_val(&own.chunks_left_m[..])
-        })
-    },
-    saving: NO_SAVING,
+    })
 };
 
 fn has_self_contact(state: &State) -> bool {

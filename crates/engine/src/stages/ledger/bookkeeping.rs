@@ -19,7 +19,7 @@ use crate::stages::ledger::totals::{kinetic_energy, momenta, synchronous_motions
 use crate::stages::motion::kick_and_drift::power_w;
 use crate::stages::motion::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::supports::reactions_work_j;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::touches_adhesion_j;
 use crate::state::State;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
@@ -31,22 +31,14 @@ use dem_results::Balance;
 use std::f64::consts::PI;
 
 /// The ledgers of energy and momentum.
-pub(crate) const LEDGER: Stage = Stage {
-    name: "energy balance",
-    within: None,
-    need: |_, _| Need::Needed("energy and momentum".to_owned()),
-    bytes: |_| 0,
-    saving: NO_SAVING,
-};
+pub(crate) const LEDGER: Stage = Stage::new("energy balance", |_, _| {
+    Need::Needed("energy and momentum".to_owned())
+});
 
 /// Checks of the time step limit and of energy.
-pub const CHECKS: Stage = Stage {
-    name: "checks",
-    within: None,
-    need: |_, _| Need::Needed("of energy, and of the limit of the step".to_owned()),
-    bytes: |_| 0,
-    saving: NO_SAVING,
-};
+pub const CHECKS: Stage = Stage::new("checks", |_, _| {
+    Need::Needed("of energy, and of the limit of the step".to_owned())
+});
 
 /// Records the work of the half step that ends with the coming kick.
 pub(crate) fn book_before_kick(state: &mut State) -> usize {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::stages::chunks::{CHUNK, ordered_sum};
 use crate::stages::clumps::motion::awake;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::sleep::mask::Asleep;
@@ -16,30 +16,26 @@ use dem_physics::rigid::{room_to_small, turn, turn_a_little};
 
 /// Kick and drift of particles.
 pub const MOTION: Stage = Stage {
-    name: "motion",
-    within: None,
-    need: |state, _| Need::Needed(format!("{} particles at the start", state.particles.free)),
     bytes: |state| {
         let p = &state.particles;
         size_of_val(&p.poses[..]) + size_of_val(&p.motions[..]) + size_of_val(&p.wrenches[..])
     },
-    saving: NO_SAVING,
+    ..Stage::new("motion", |state, _| {
+        Need::Needed(format!("{} particles at the start", state.particles.free))
+    })
 };
 
 /// Gravity.
 pub const GRAVITY: Stage = Stage {
-    name: "gravity",
     within: Some(MOTION.name),
-    need: |state, _| {
+    ..Stage::new("gravity", |state, _| {
         let [x, y, z] = state.model.gravity_m_s2;
         Need::of(
             state.model.gravity_m_s2 != [0.0; 3],
             || format!("[{x}, {y}, {z}] m/s2"),
             "no gravity",
         )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
+    })
 };
 
 /// Updates the velocities of particles. Returns the number of particles.

@@ -1,27 +1,24 @@
 //! Loads on particle groups, and the course of loads and motions over time.
 
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::loads::GroupLoad;
 use crate::state::particles::{Motion, Pose, Wrench};
 
 /// Loads.
 pub const LOADS: Stage = Stage {
-    name: "loads",
-    within: None,
-    need: |state, _| {
+    bytes: |state| {
+        let loads = state.loads.iter();
+        loads.map(|load| size_of_val(&load.particles[..])).sum()
+    },
+    ..Stage::new("loads", |state, _| {
         let particles = state.loads.iter().map(|load| load.particles.len());
         Need::of(
             !state.loads.is_empty(),
             || on_particles(particles.sum()),
             "no loads",
         )
-    },
-    bytes: |state| {
-        let loads = state.loads.iter();
-        loads.map(|load| size_of_val(&load.particles[..])).sum()
-    },
-    saving: NO_SAVING,
+    })
 };
 
 pub(super) fn on_particles(count: usize) -> String {

@@ -22,12 +22,6 @@ const PARTICLE_DAMPING_NS: f64 = 37.6;
 
 /// Damping of particles.
 pub const PARTICLE_DAMPING: Stage = Stage {
-    name: "local damping",
-    within: None,
-    need: |state, _| {
-        let gamma = state.model.particle_damping;
-        Need::of(gamma > 0.0, || format!("gamma {gamma}"), "not asked for")
-    },
     bytes: |state| size_of_val(&state.scratch.particle_resistance[..]),
     saving: |state| {
         Saving::of(
@@ -36,6 +30,10 @@ pub const PARTICLE_DAMPING: Stage = Stage {
             PARTICLE_DAMPING_NS,
         )
     },
+    ..Stage::new("local damping", |state, _| {
+        let gamma = state.model.particle_damping;
+        Need::of(gamma > 0.0, || format!("gamma {gamma}"), "not asked for")
+    })
 };
 
 /// Sets the damping forces on particles. Returns the number of particles on which they act.

@@ -11,7 +11,7 @@ use crate::stages::clumps::motion::{place_all, synchronous};
 use crate::stages::contacts::forces::contact_energy_j;
 use crate::stages::ledger::totals::synchronous_motions;
 use crate::stages::search::neighbours::near_pairs;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
 use crate::state::State;
 use crate::state::bridges::Bridges;
@@ -28,17 +28,6 @@ use dem_io::units::significant;
 
 /// Sleeping bodies.
 pub(crate) const SLEEP: Stage = Stage {
-    name: "sleep",
-    within: None,
-    need: |state, scene| match (&state.model.sleep, &scene.sleep) {
-        (Some(sleep), _) => Need::Needed(format!(
-            "bodies slower than {} mm/s for {} ms are not stepped until something comes near",
-            significant(1e3 * sleep.speed_m_s, 4),
-            significant(1e3 * sleep.after_s, 4)
-        )),
-        (None, Some(_)) => Need::LeftOut("nothing can touch"),
-        (None, None) => Need::LeftOut("not asked for"),
-    },
     bytes: |state| {
         state.sleep.as_ref().map_or(0, |sleep| {
             size_of_val(&sleep.of_cluster[..])
@@ -47,7 +36,17 @@ pub(crate) const SLEEP: Stage = Stage {
                 + state.particles.asleep.len()
         })
     },
-    saving: NO_SAVING,
+    ..Stage::new("sleep", |state, scene| {
+        match (&state.model.sleep, &scene.sleep) {
+            (Some(sleep), _) => Need::Needed(format!(
+                "bodies slower than {} mm/s for {} ms are not stepped until something comes near",
+                significant(1e3 * sleep.speed_m_s, 4),
+                significant(1e3 * sleep.after_s, 4)
+            )),
+            (None, Some(_)) => Need::LeftOut("nothing can touch"),
+            (None, None) => Need::LeftOut("not asked for"),
+        }
+    })
 };
 
 /// Interval between checks for slow bodies, in steps.

@@ -3,7 +3,7 @@
 use dem_scene::Hold;
 
 use super::loads::on_particles;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::events::Break;
 use crate::state::loads::factor_at;
@@ -12,21 +12,18 @@ use crate::state::supports::{GroupSupport, HeldParticle, SupportPhase};
 
 /// Supports.
 pub const SUPPORTS: Stage = Stage {
-    name: "supports",
-    within: None,
-    need: |state, _| {
+    bytes: |state| {
+        let supports = state.supports.iter();
+        supports.map(|support| size_of_val(&support.held[..])).sum()
+    },
+    ..Stage::new("supports", |state, _| {
         let particles = state.supports.iter().map(|support| support.held.len());
         Need::of(
             !state.supports.is_empty(),
             || on_particles(particles.sum()),
             "no supports",
         )
-    },
-    bytes: |state| {
-        let supports = state.supports.iter();
-        supports.map(|support| size_of_val(&support.held[..])).sum()
-    },
-    saving: NO_SAVING,
+    })
 };
 
 /// Records the motion of the held particles before the kick, and before bonds break: a break gives

@@ -13,26 +13,20 @@ use nalgebra::Vector3;
 
 use crate::stages::clumps::motion::kick_one;
 use crate::stages::contacts::forces::pair_force_n;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::{surface_velocity_m_s, touch_force_n};
 use crate::state::State;
 use crate::state::clumps::Intake;
 use crate::state::contacts::Contacts;
 
 /// Particles that daughters replace.
-pub(crate) const DAUGHTERS: Stage = Stage {
-    name: "daughters",
-    within: None,
-    need: |state, _| {
-        Need::of(
-            state.model.rules.make_daughters(),
-            || "particles are replaced once they have taken in enough energy".to_owned(),
-            "no particle is replaced by daughters",
-        )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
-};
+pub(crate) const DAUGHTERS: Stage = Stage::new("daughters", |state, _| {
+    Need::of(
+        state.model.rules.make_daughters(),
+        || "particles are replaced once they have taken in enough energy".to_owned(),
+        "no particle is replaced by daughters",
+    )
+});
 
 /// Adds the work of the contacts over the coming kick to what the clumps have taken in. Returns
 /// the number of clumps that something touches.

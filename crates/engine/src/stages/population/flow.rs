@@ -4,28 +4,22 @@ use super::append::add_clumps;
 use super::change::apply_topology_change;
 use super::inlets::coming;
 use super::outlets::leaving;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::events::TopologyChange;
 
 /// Inlets and outlets.
-pub(crate) const FLOW: Stage = Stage {
-    name: "inlets and outlets",
-    within: None,
-    need: |state, _| {
-        let (inlets, outlets) = (
-            state.model.rules.inlets.len(),
-            state.model.rules.outlets.len(),
-        );
-        Need::of(
-            inlets + outlets > 0,
-            || format!("{inlets} and {outlets}"),
-            "no body comes or goes",
-        )
-    },
-    bytes: |_| 0,
-    saving: NO_SAVING,
-};
+pub(crate) const FLOW: Stage = Stage::new("inlets and outlets", |state, _| {
+    let (inlets, outlets) = (
+        state.model.rules.inlets.len(),
+        state.model.rules.outlets.len(),
+    );
+    Need::of(
+        inlets + outlets > 0,
+        || format!("{inlets} and {outlets}"),
+        "no body comes or goes",
+    )
+});
 
 /// Adds and removes bodies, between a kick and the drift after it. Returns the number of inlets and
 /// outlets checked.

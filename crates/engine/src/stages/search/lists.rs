@@ -18,7 +18,7 @@ use crate::stages::clusters::bytes::{ClusterUser, clusters_bytes};
 use crate::stages::contacts::forces::{find_mean_radius, list_within, relist};
 use crate::stages::ledger::islands::join_at_moving_walls;
 use crate::stages::motion::sleep::begins_to_move;
-use crate::stages::stage::{NO_SAVING, Need, Stage};
+use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::{plane_in_space, reaches};
 use crate::state::State;
 use crate::state::bridges::Bridges;
@@ -34,15 +34,6 @@ use crate::state::walls::Wall;
 
 /// The neighbour search.
 pub(crate) const SEARCH: Stage = Stage {
-    name: "neighbour search",
-    within: None,
-    need: |state, _| {
-        Need::of(
-            state.contacts.is_some(),
-            || "when something may have come near".to_owned(),
-            "nothing can touch",
-        )
-    },
     bytes: |state| {
         let contacts = state.contacts.as_ref();
         let of_contacts = contacts.map_or(0, |c| {
@@ -52,7 +43,13 @@ pub(crate) const SEARCH: Stage = Stage {
         });
         of_contacts + clusters_bytes(state, ClusterUser::Contacts)
     },
-    saving: NO_SAVING,
+    ..Stage::new("neighbour search", |state, _| {
+        Need::of(
+            state.contacts.is_some(),
+            || "when something may have come near".to_owned(),
+            "nothing can touch",
+        )
+    })
 };
 
 /// Subtracts the displacement in a drift from the skin left until the lists are rebuilt.
