@@ -8,6 +8,7 @@ use dem_laboratory::figure::Figure;
 use dem_laboratory::test_result::TestResult;
 use dem_plots::{Axis, Line, Plot};
 use dem_results::ResultsFolder;
+use dem_results::folder::names;
 use dem_scene::{Bars, Test};
 
 use super::crack::{CrackPicture, crack_map};
@@ -61,20 +62,20 @@ pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Resul
         for (name, plot) in plots {
             folder.write_plot(name, &plot.svg().file())?;
         }
-        folder.write_bar_signals(&signals_csv(files.record, bars))?;
+        folder.write(names::BAR_SIGNALS, &signals_csv(files.record, bars))?;
         if let Some(gauges) = bars.gauges {
             let signals = gauge_signals(files.record, bars, gauges);
             folder.write_plot("gauge-signals", &gauge_plot(&signals).svg().file())?;
-            folder.write_gauge_signals(&gauges_csv(&signals))?;
+            folder.write(names::GAUGE_SIGNALS, &gauges_csv(&signals))?;
         }
     }
     let slabs = slabs(files.picture.setup, &files.record.disc);
     if !slabs.is_empty() {
         let plot = disc_stress::plot(&slabs, files.record.disc.load_n);
         folder.write_plot("disc-stress", &plot.svg().file())?;
-        folder.write_disc_stress(&disc_stress::table(&slabs))?;
+        folder.write(names::DISC_STRESS, &disc_stress::table(&slabs))?;
     }
-    folder.write_test_curve(&curve_csv(files.record, play_m))
+    folder.write(names::TEST_CURVE, &curve_csv(files.record, play_m))
 }
 
 /// A line of a plot.

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
+use dem_results::folder::names;
 use dem_results::summary::FragmentSummary;
 use dem_results::{ResultsFolder, TreeRow, write_fragment_tree};
 
@@ -54,7 +55,7 @@ pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<
         particles: cluster.particles,
     };
     let rows = (0..).zip(&clusters.history).map(row);
-    write_fragment_tree(&folder.fragment_tree(), rows)
+    write_fragment_tree(&folder.file(names::FRAGMENT_TREE), rows)
 }
 
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it

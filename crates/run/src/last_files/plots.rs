@@ -2,6 +2,7 @@
 
 use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
+use dem_results::folder::names;
 use dem_results::summary::{ENERGIES, Energy, EnergyKind, Measured};
 use dem_results::{ResultsFolder, Series, read_series};
 use dem_scene::Statistic;
@@ -21,7 +22,7 @@ pub(crate) fn write_plots(
     probes: &[Probe],
     results: &[Measured],
 ) -> Result<()> {
-    let series = read_series(&folder.series())?;
+    let series = read_series(&folder.file(names::SERIES))?;
     let changes = |energy: &Energy| column(&series, energy.name).iter().any(|v| *v != 0.0);
     let changing: Vec<Energy> = ENERGIES.into_iter().filter(changes).collect();
     let names: Vec<&str> = changing.iter().map(|energy| energy.name).collect();

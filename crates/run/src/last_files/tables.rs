@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use dem_io::Result;
+use dem_results::folder::names;
 use dem_results::{MixingRow, write_distribution, write_flows, write_mixing};
 
 use super::last_state::LastState;
@@ -21,9 +22,12 @@ pub(super) fn fragments(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let output = last.scene.output.as_ref();
     let sieves_m = output.map_or(&[][..], |output| &output.sieves_m);
     let rows = fragments.rows(&state.model, sieves_m);
-    write_distribution(&folder.distribution(), &rows)?;
+    write_distribution(&folder.file(names::DISTRIBUTION), &rows)?;
     let plots = FRAGMENT_PLOTS.iter().map(|name| folder.plot(name));
-    let tables = [folder.fragment_tree(), folder.distribution()];
+    let tables = [
+        folder.file(names::FRAGMENT_TREE),
+        folder.file(names::DISTRIBUTION),
+    ];
     Ok(plots.filter(|path| path.is_file()).chain(tables).collect())
 }
 
@@ -34,7 +38,7 @@ pub(super) fn flow(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     }
     let interval_s = (last.scene.output.as_ref()).and_then(|output| output.flow_s);
     let interval_s = interval_s.unwrap_or(last.end_s / 20.0);
-    let path = last.folder.flow();
+    let path = last.folder.file(names::FLOW);
     write_flows(&path, &flow_rows(last.state, interval_s, last.end_s))?;
     Ok(vec![path])
 }
@@ -55,7 +59,7 @@ pub(super) fn mixing(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
         })
     };
     let rows: Vec<MixingRow<'_>> = last.probes.iter().flat_map(of_probe).collect();
-    let path = last.folder.mixing();
+    let path = last.folder.file(names::MIXING);
     write_mixing(&path, &rows)?;
     Ok(vec![path])
 }

@@ -2,6 +2,7 @@
 
 use dem_io::Result;
 use dem_results::discharge::COLUMNS;
+use dem_results::folder::names;
 use dem_results::{DischargeRow, Table, discharge_lines};
 
 use super::{Changes, Opening, Output, Saved};
@@ -18,7 +19,7 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     if state.model.rules.outlets.is_empty() {
         return Ok(None);
     }
-    let table = opening.table(&opening.folder.discharge(), COLUMNS)?;
+    let table = opening.table(&opening.folder.file(names::DISCHARGE), COLUMNS)?;
     let written = state.population.discharged.len();
     Ok(Some(Box::new(Discharge { table, written })))
 }

@@ -2,6 +2,7 @@
 
 use dem_io::Result;
 use dem_io::text::exact;
+use dem_results::folder::names;
 use dem_results::{EVENT_COLUMNS, Event, Table, event_lines};
 
 use super::{Changes, Opening, Output, Saved};
@@ -17,7 +18,7 @@ const NAMED: usize = 8;
 struct EventTable(Table);
 
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
-    let table = opening.table(&opening.folder.events(), EVENT_COLUMNS)?;
+    let table = opening.table(&opening.folder.file(names::EVENTS), EVENT_COLUMNS)?;
     Ok(Some(Box::new(EventTable(table))))
 }
 

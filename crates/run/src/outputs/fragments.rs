@@ -1,6 +1,7 @@
 //! The fragments at chosen moments, `fragments.csv`.
 
 use dem_io::Result;
+use dem_results::folder::names;
 use dem_results::fragments::COLUMNS;
 use dem_results::{FragmentRow, Table, append_fragments};
 
@@ -27,7 +28,7 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     }
     let position = opening.position::<(TableEnd, u64)>()?;
     Ok(Some(Box::new(Fragments {
-        table: opening.table(&opening.folder.fragments(), COLUMNS)?,
+        table: opening.table(&opening.folder.file(names::FRAGMENTS), COLUMNS)?,
         written: position.map_or(0, |(_, written)| written),
     })))
 }
