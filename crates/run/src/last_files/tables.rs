@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use dem_io::Result;
+use dem_results::columns::write_table;
 use dem_results::folder::names;
-use dem_results::{MixingRow, write_distribution, write_flows, write_mixing};
+use dem_results::{DISTRIBUTION_COLUMNS, FLOW_COLUMNS, MIXING_COLUMNS, MixingRow};
 
 use super::last_state::LastState;
 use crate::last_files::flows::flow_rows;
@@ -22,7 +23,11 @@ pub(super) fn fragments(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let output = last.scene.output.as_ref();
     let sieves_m = output.map_or(&[][..], |output| &output.sieves_m);
     let rows = fragments.rows(&state.model, sieves_m);
-    write_distribution(&folder.file(names::DISTRIBUTION), &rows)?;
+    write_table(
+        &folder.file(names::DISTRIBUTION),
+        DISTRIBUTION_COLUMNS,
+        rows,
+    )?;
     let plots = FRAGMENT_PLOTS.iter().map(|name| folder.plot(name));
     let tables = [
         folder.file(names::FRAGMENT_TREE),
@@ -39,7 +44,8 @@ pub(super) fn flow(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let interval_s = (last.scene.output.as_ref()).and_then(|output| output.flow_s);
     let interval_s = interval_s.unwrap_or(last.end_s / 20.0);
     let path = last.folder.file(names::FLOW);
-    write_flows(&path, &flow_rows(last.state, interval_s, last.end_s))?;
+    let rows = flow_rows(last.state, interval_s, last.end_s);
+    write_table(&path, FLOW_COLUMNS, rows)?;
     Ok(vec![path])
 }
 
@@ -58,8 +64,8 @@ pub(super) fn mixing(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
             fraction: cell.fraction,
         })
     };
-    let rows: Vec<MixingRow<'_>> = last.probes.iter().flat_map(of_probe).collect();
+    let rows = last.probes.iter().flat_map(of_probe);
     let path = last.folder.file(names::MIXING);
-    write_mixing(&path, &rows)?;
+    write_table(&path, MIXING_COLUMNS, rows)?;
     Ok(vec![path])
 }

@@ -2,6 +2,7 @@
 
 use dem_io::Result;
 use dem_io::text::exact;
+use dem_results::columns::header;
 use dem_results::folder::names;
 use dem_results::{EVENT_COLUMNS, Event, Table, event_lines};
 
@@ -18,7 +19,7 @@ const NAMED: usize = 8;
 struct EventTable(Table);
 
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
-    let table = opening.table(&opening.folder.file(names::EVENTS), EVENT_COLUMNS)?;
+    let table = opening.table(&opening.folder.file(names::EVENTS), &header(EVENT_COLUMNS))?;
     Ok(Some(Box::new(EventTable(table))))
 }
 
@@ -37,7 +38,7 @@ impl Output for EventTable {
         write_zones(state, table)?;
         write_sleep(state, table)?;
         for NewStep { cause, detail } in changes.new_steps {
-            table.append(&event_lines(&[of_all(state, "time_step", cause, detail)]))?;
+            table.append(&event_lines([of_all(state, "time_step", cause, detail)]))?;
         }
         Ok(())
     }
@@ -70,7 +71,7 @@ fn write_breaks(state: &State, bodies: &[PlacedBody], table: &mut Table) -> Resu
             energy_j: Some(broken.released_j),
             detail: found.map_or("", |(body, _)| &body.name),
         };
-        table.append(&event_lines(&[event]))?;
+        table.append(&event_lines([event]))?;
     }
     Ok(())
 }
@@ -87,11 +88,8 @@ fn write_splits(state: &State, table: &mut Table) -> Result<()> {
         .iter()
         .map(|split| split_text(split, &clusters.history))
         .collect();
-    let events: Vec<Event<'_>> = details
-        .iter()
-        .map(|detail| of_all(state, "split", "", detail))
-        .collect();
-    table.append(&event_lines(&events))
+    let events = (details.iter()).map(|detail| of_all(state, "split", "", detail));
+    table.append(&event_lines(events))
 }
 
 /// Human-readable fragments of one present or former cluster:
@@ -135,7 +133,7 @@ fn write_population(state: &State, table: &mut Table) -> Result<()> {
     let events = &state.scratch.events;
     for one in &events.population {
         let (kind, cause) = kind_and_cause(one);
-        table.append(&event_lines(&[Event {
+        table.append(&event_lines([Event {
             step: events.step,
             time_s: events.time_s,
             position_m: Some(place_m(one)),
@@ -227,7 +225,7 @@ fn detail(event: &PopulationEvent) -> String {
 fn write_zones(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.zones {
         let plural = if news.particles == 1 { "" } else { "s" };
-        table.append(&event_lines(&[Event {
+        table.append(&event_lines([Event {
             step: news.step,
             time_s: news.time_s,
             energy_j: Some(news.lost_j),
@@ -246,7 +244,7 @@ fn write_zones(state: &State, table: &mut Table) -> Result<()> {
 fn write_sleep(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.sleep {
         let plural = if news.bodies == 1 { "body" } else { "bodies" };
-        table.append(&event_lines(&[Event {
+        table.append(&event_lines([Event {
             step: news.step,
             time_s: news.time_s,
             ..of_all(

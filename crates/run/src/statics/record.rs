@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
+use dem_results::columns::header;
 use dem_results::folder::names;
 use dem_results::summary::{EquilibriumSummary, Inputs, Summary, Verdict};
 use dem_results::{EVENT_COLUMNS, FrameFiles, ResultsFolder, SeriesFile, Table};
@@ -136,7 +137,7 @@ impl AtRest<'_> {
             self.state.time_s,
             &series::row(self.state, self.balance, measured),
         )?;
-        Table::create(&folder.file(names::EVENTS), EVENT_COLUMNS)?;
+        Table::create(&folder.file(names::EVENTS), &header(EVENT_COLUMNS))?;
         let walls = WallOutput::of(self.state);
         let mut frames = FrameFiles::create(folder, walls.files());
         order.write(self.state, &walls, &mut frames)?;
