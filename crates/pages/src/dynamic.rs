@@ -49,7 +49,7 @@ pub(crate) fn heights(bench: &Bench) -> Result<(), Failed> {
         let along = (0..=100).map(|i| first * (last / first).powf(0.01 * f64::from(i)));
         let along = along.map(|e| [e, 100.0 * law.t10(e)]);
         lines.push(Line::dashed(
-            &format!("A (1 - exp(-b E)), {name}"),
+            format!("A (1 - exp(-b E)), {name}"),
             along.collect(),
         ));
         let at = |[e, t10]: &[f64; 2]| Point {

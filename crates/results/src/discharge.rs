@@ -1,38 +1,11 @@
 //! What leaves through outlets, as one CSV table that grows; and the size distribution of all
 //! fragments, as one that is written at the end.
 //!
-//! Columns: see [`DISCHARGE_COLUMNS`] and [`DISTRIBUTION_COLUMNS`].
+//! Columns: see [`DischargeRow::COLUMNS`] and [`DistributionRow::COLUMNS`].
 
+use super::columns::Column;
 use super::growing::field;
 use dem_io::text::exact;
-
-/// What leaves. Length, width and thickness are those of the box along the principal axes, the
-/// longest first.
-pub const DISCHARGE_COLUMNS: &[(&str, fn(&DischargeRow<'_>) -> String)] = &[
-    ("time_s", |row| exact(row.time_s)),
-    ("fragment_id", |row| row.fragment_id.to_string()),
-    ("body", |row| field(row.body)),
-    ("material", |row| field(row.material)),
-    ("outlet", |row| field(row.outlet)),
-    ("mass_kg", |row| exact(row.mass_kg)),
-    ("equivalent_diameter_m", |row| {
-        exact(row.equivalent_diameter_m)
-    }),
-    ("length_m", |row| exact(row.box_lengths_m[0])),
-    ("width_m", |row| exact(row.box_lengths_m[1])),
-    ("thickness_m", |row| exact(row.box_lengths_m[2])),
-    ("sieve_m", |row| exact(row.sieve_m)),
-];
-
-/// The size distribution.
-pub const DISTRIBUTION_COLUMNS: &[(&str, fn(&DistributionRow<'_>) -> String)] = &[
-    ("body", |row| field(row.body)),
-    ("location", |row| field(row.location)),
-    ("sieve_m", |row| exact(row.sieve_m)),
-    ("passing_kg", |row| exact(row.passing_kg)),
-    ("passing_fraction", |row| exact(row.passing_fraction)),
-    ("resolved", |row| u8::from(row.resolved).to_string()),
-];
 
 /// A fragment or a body that has left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +30,26 @@ pub struct DischargeRow<'a> {
     pub sieve_m: f64,
 }
 
+impl DischargeRow<'_> {
+    /// The columns of its table. Length, width and thickness are those of the box along the
+    /// principal axes, the longest first.
+    pub const COLUMNS: [Column<Self>; 11] = [
+        ("time_s", |row| exact(row.time_s)),
+        ("fragment_id", |row| row.fragment_id.to_string()),
+        ("body", |row| field(row.body)),
+        ("material", |row| field(row.material)),
+        ("outlet", |row| field(row.outlet)),
+        ("mass_kg", |row| exact(row.mass_kg)),
+        ("equivalent_diameter_m", |row| {
+            exact(row.equivalent_diameter_m)
+        }),
+        ("length_m", |row| exact(row.box_lengths_m[0])),
+        ("width_m", |row| exact(row.box_lengths_m[1])),
+        ("thickness_m", |row| exact(row.box_lengths_m[2])),
+        ("sieve_m", |row| exact(row.sieve_m)),
+    ];
+}
+
 /// A point of a size distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DistributionRow<'a> {
@@ -73,4 +66,16 @@ pub struct DistributionRow<'a> {
     /// Whether the sieve is so large that the spheres of the bodies do not decide on what passes:
     /// `1`, else `0`.
     pub resolved: bool,
+}
+
+impl DistributionRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 6] = [
+        ("body", |row| field(row.body)),
+        ("location", |row| field(row.location)),
+        ("sieve_m", |row| exact(row.sieve_m)),
+        ("passing_kg", |row| exact(row.passing_kg)),
+        ("passing_fraction", |row| exact(row.passing_fraction)),
+        ("resolved", |row| u8::from(row.resolved).to_string()),
+    ];
 }

@@ -1,27 +1,11 @@
 //! Events of a run (broken bonds, replaced bodies, changes of the plan) as one CSV table that
 //! grows.
 //!
-//! Columns: see [`EVENT_COLUMNS`]. Values that do not apply to an event are empty.
+//! Columns: see [`Event::COLUMNS`]. Values that do not apply to an event are empty.
 
-use super::columns::{known, lines};
+use super::columns::{Column, known, lines};
 use super::growing::field;
 use dem_io::text::exact;
-
-/// The columns.
-pub const EVENT_COLUMNS: &[(&str, fn(&Event<'_>) -> String)] = &[
-    ("step", |row| row.step.to_string()),
-    ("time_s", |row| exact(row.time_s)),
-    ("event", |row| field(row.kind)),
-    ("bond", |row| known(row.bond)),
-    ("particle_a", |row| known(row.particle_a)),
-    ("particle_b", |row| known(row.particle_b)),
-    ("x_m", |row| place(row, 0)),
-    ("y_m", |row| place(row, 1)),
-    ("z_m", |row| place(row, 2)),
-    ("cause", |row| field(row.cause)),
-    ("energy_j", |row| known(row.energy_j.map(exact))),
-    ("detail", |row| field(row.detail)),
-];
 
 /// One event.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,9 +32,27 @@ pub struct Event<'a> {
     pub detail: &'a str,
 }
 
+impl Event<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 12] = [
+        ("step", |row| row.step.to_string()),
+        ("time_s", |row| exact(row.time_s)),
+        ("event", |row| field(row.kind)),
+        ("bond", |row| known(row.bond)),
+        ("particle_a", |row| known(row.particle_a)),
+        ("particle_b", |row| known(row.particle_b)),
+        ("x_m", |row| place(row, 0)),
+        ("y_m", |row| place(row, 1)),
+        ("z_m", |row| place(row, 2)),
+        ("cause", |row| field(row.cause)),
+        ("energy_j", |row| known(row.energy_j.map(exact))),
+        ("detail", |row| field(row.detail)),
+    ];
+}
+
 /// Lines of the table of events.
 pub fn event_lines<'a>(events: impl IntoIterator<Item = Event<'a>>) -> String {
-    lines(EVENT_COLUMNS, events)
+    lines(&Event::COLUMNS, events)
 }
 
 fn place(event: &Event<'_>, axis: usize) -> String {

@@ -1,28 +1,9 @@
 //! Mass flows over time and the cells of mixtures, as CSV tables that are written at the end of a
 //! run. Every number reads back as the same bits.
 
+use super::columns::Column;
 use super::growing::field;
 use dem_io::text::exact;
-
-/// Mass flows.
-pub const FLOW_COLUMNS: &[(&str, fn(&FlowRow<'_>) -> String)] = &[
-    ("time_s", |row| exact(row.time_s)),
-    ("body", |row| field(row.body)),
-    ("outlet", |row| field(row.outlet)),
-    ("pieces", |row| row.pieces.to_string()),
-    ("mass_kg", |row| exact(row.mass_kg)),
-    ("flow_kg_s", |row| exact(row.flow_kg_s)),
-];
-
-/// Mixtures.
-pub const MIXING_COLUMNS: &[(&str, fn(&MixingRow<'_>) -> String)] = &[
-    ("measure", |row| field(row.measure)),
-    ("x_m", |row| exact(row.centre_m[0])),
-    ("y_m", |row| exact(row.centre_m[1])),
-    ("z_m", |row| exact(row.centre_m[2])),
-    ("mass_kg", |row| exact(row.mass_kg)),
-    ("fraction", |row| exact(row.fraction)),
-];
 
 /// What has come or left in an interval of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +22,18 @@ pub struct FlowRow<'a> {
     pub flow_kg_s: f64,
 }
 
+impl FlowRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 6] = [
+        ("time_s", |row| exact(row.time_s)),
+        ("body", |row| field(row.body)),
+        ("outlet", |row| field(row.outlet)),
+        ("pieces", |row| row.pieces.to_string()),
+        ("mass_kg", |row| exact(row.mass_kg)),
+        ("flow_kg_s", |row| exact(row.flow_kg_s)),
+    ];
+}
+
 /// A cell of a mixture at the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MixingRow<'a> {
@@ -52,4 +45,16 @@ pub struct MixingRow<'a> {
     pub mass_kg: f64,
     /// Mass fraction of the first set in it.
     pub fraction: f64,
+}
+
+impl MixingRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 6] = [
+        ("measure", |row| field(row.measure)),
+        ("x_m", |row| exact(row.centre_m[0])),
+        ("y_m", |row| exact(row.centre_m[1])),
+        ("z_m", |row| exact(row.centre_m[2])),
+        ("mass_kg", |row| exact(row.mass_kg)),
+        ("fraction", |row| exact(row.fraction)),
+    ];
 }

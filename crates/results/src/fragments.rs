@@ -1,49 +1,13 @@
 //! Fragments of breaking bodies: their motion at chosen moments, as one CSV table that grows, and
 //! their origin, as one that is written at the end.
 //!
-//! Columns: see [`FRAGMENT_COLUMNS`] and [`TREE_COLUMNS`]. Values that a fragment does not have are
-//! empty. A zero has no sign.
+//! Columns: see [`FragmentRow::COLUMNS`] and [`TreeRow::COLUMNS`]. Values that a fragment does not
+//! have are empty. A zero has no sign.
 
-use super::columns::{known, lines};
+use super::columns::{Column, known, lines};
 use super::growing::{Table, field};
 use dem_io::diagnostic::Result;
 use dem_io::text::exact;
-
-/// The fragments at chosen moments.
-pub const FRAGMENT_COLUMNS: &[(&str, fn(&FragmentRow<'_>) -> String)] = &[
-    ("time_s", |row| exact(row.time_s)),
-    ("fragment_id", |row| row.fragment_id.to_string()),
-    ("parent_id", |row| known(row.parent_id)),
-    ("particles", |row| row.particles.to_string()),
-    ("mass_kg", |row| number(row.mass_kg)),
-    ("x_m", |row| number(row.centre_m[0])),
-    ("y_m", |row| number(row.centre_m[1])),
-    ("z_m", |row| number(row.centre_m[2])),
-    ("vx_m_s", |row| number(row.velocity_m_s[0])),
-    ("vy_m_s", |row| number(row.velocity_m_s[1])),
-    ("vz_m_s", |row| number(row.velocity_m_s[2])),
-    ("wx_rad_s", |row| number(row.angular_velocity_rad_s[0])),
-    ("wy_rad_s", |row| number(row.angular_velocity_rad_s[1])),
-    ("wz_rad_s", |row| number(row.angular_velocity_rad_s[2])),
-    ("fx_n", |row| number(row.force_n[0])),
-    ("fy_n", |row| number(row.force_n[1])),
-    ("fz_n", |row| number(row.force_n[2])),
-    ("equivalent_diameter_m", |row| {
-        number(row.equivalent_diameter_m)
-    }),
-    ("box_diagonal_m", |row| number(row.box_diagonal_m)),
-    ("body", |row| field(row.body)),
-    ("material", |row| field(row.material)),
-];
-
-/// The fragment tree.
-pub const TREE_COLUMNS: &[(&str, fn(&TreeRow) -> String)] = &[
-    ("fragment_id", |row| row.fragment_id.to_string()),
-    ("parent_id", |row| known(row.parent_id)),
-    ("created_s", |row| exact(row.created_s)),
-    ("ended_s", |row| known(row.ended_s.map(exact))),
-    ("particles", |row| row.particles.to_string()),
-];
 
 /// Number of rows that are passed to the system together.
 const AT_ONCE: usize = 1000;
@@ -79,11 +43,40 @@ pub struct FragmentRow<'a> {
     pub material: &'a str,
 }
 
+impl FragmentRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 21] = [
+        ("time_s", |row| exact(row.time_s)),
+        ("fragment_id", |row| row.fragment_id.to_string()),
+        ("parent_id", |row| known(row.parent_id)),
+        ("particles", |row| row.particles.to_string()),
+        ("mass_kg", |row| number(row.mass_kg)),
+        ("x_m", |row| number(row.centre_m[0])),
+        ("y_m", |row| number(row.centre_m[1])),
+        ("z_m", |row| number(row.centre_m[2])),
+        ("vx_m_s", |row| number(row.velocity_m_s[0])),
+        ("vy_m_s", |row| number(row.velocity_m_s[1])),
+        ("vz_m_s", |row| number(row.velocity_m_s[2])),
+        ("wx_rad_s", |row| number(row.angular_velocity_rad_s[0])),
+        ("wy_rad_s", |row| number(row.angular_velocity_rad_s[1])),
+        ("wz_rad_s", |row| number(row.angular_velocity_rad_s[2])),
+        ("fx_n", |row| number(row.force_n[0])),
+        ("fy_n", |row| number(row.force_n[1])),
+        ("fz_n", |row| number(row.force_n[2])),
+        ("equivalent_diameter_m", |row| {
+            number(row.equivalent_diameter_m)
+        }),
+        ("box_diagonal_m", |row| number(row.box_diagonal_m)),
+        ("body", |row| field(row.body)),
+        ("material", |row| field(row.material)),
+    ];
+}
+
 /// Appends the fragments of one moment to their table. They are in the file when this returns. If
 /// the disk is full, earlier moments are kept, and possibly some complete rows of this one.
 pub fn append_fragments(table: &mut Table, fragments: &[FragmentRow<'_>]) -> Result<()> {
     for some in fragments.chunks(AT_ONCE) {
-        table.append(&lines(FRAGMENT_COLUMNS, some.iter().copied()))?;
+        table.append(&lines(&FragmentRow::COLUMNS, some.iter().copied()))?;
     }
     Ok(())
 }
@@ -106,4 +99,15 @@ pub struct TreeRow {
     pub ended_s: Option<f64>,
     /// Number of its particles.
     pub particles: u32,
+}
+
+impl TreeRow {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 5] = [
+        ("fragment_id", |row| row.fragment_id.to_string()),
+        ("parent_id", |row| known(row.parent_id)),
+        ("created_s", |row| exact(row.created_s)),
+        ("ended_s", |row| known(row.ended_s.map(exact))),
+        ("particles", |row| row.particles.to_string()),
+    ];
 }

@@ -22,11 +22,11 @@ pub mod summary;
 pub(crate) mod walls;
 
 pub use arrays::{Array, Arrays, read_all_arrays, read_arrays};
-pub use discharge::{DISCHARGE_COLUMNS, DISTRIBUTION_COLUMNS, DischargeRow, DistributionRow};
-pub use events::{EVENT_COLUMNS, Event, event_lines};
-pub use flows::{FLOW_COLUMNS, FlowRow, MIXING_COLUMNS, MixingRow};
+pub use discharge::{DischargeRow, DistributionRow};
+pub use events::{Event, event_lines};
+pub use flows::{FlowRow, MixingRow};
 pub use folder::{Existing, ResultsFolder};
-pub use fragments::{FRAGMENT_COLUMNS, FragmentRow, TREE_COLUMNS, TreeRow, append_fragments};
+pub use fragments::{FragmentRow, TreeRow, append_fragments};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, WallFiles, write_frame};
 pub use growing::Table;
 pub use json::{from_json, write_json};

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 
 use dem_results::columns::{header, write_table};
-use dem_results::{FRAGMENT_COLUMNS, FragmentRow, TREE_COLUMNS, Table, TreeRow, append_fragments};
+use dem_results::{FragmentRow, Table, TreeRow, append_fragments};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
@@ -31,7 +31,7 @@ fn fragment(time_s: f64, id: u32, numbers: [f64; 15]) -> FragmentRow<'static> {
 fn fragments_look_as_documented() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = Table::create(&path, &header(FRAGMENT_COLUMNS)).unwrap();
+    let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
     let whole = [
         0.25, 1.0, -2.0, 3.0, 0.5, -0.0, 1e-9, 7.0, 8.0, 9.0, -1.0, 0.0, 1e3, 0.125, 0.75,
     ];
@@ -67,15 +67,15 @@ fn the_tree_looks_as_documented_and_is_replaced_whole() {
         ended_s: None,
         particles: 4,
     };
-    write_table(&path, TREE_COLUMNS, [root, root, root]).unwrap();
-    write_table(&path, TREE_COLUMNS, [root, child]).unwrap();
+    write_table(&path, &TreeRow::COLUMNS, [root, root, root]).unwrap();
+    write_table(&path, &TreeRow::COLUMNS, [root, child]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
         "fragment_id,parent_id,created_s,ended_s,particles\n0,,0,0.0025,7\n1,0,0.0025,,4\n"
     );
-    assert_eq!(TREE_COLUMNS.len(), 5);
+    assert_eq!(TreeRow::COLUMNS.len(), 5);
     let missing = folder.path().join("missing/tree.csv");
-    let error = write_table(&missing, TREE_COLUMNS, [root]).unwrap_err();
+    let error = write_table(&missing, &TreeRow::COLUMNS, [root]).unwrap_err();
     assert_eq!(error.exit_code(), 1);
 }
 
@@ -83,7 +83,7 @@ fn the_tree_looks_as_documented_and_is_replaced_whole() {
 fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = Table::create(&path, &header(FRAGMENT_COLUMNS)).unwrap();
+    let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
     append_fragments(&mut file, &[fragment(0.0, 0, [1.0; 15])]).unwrap();
     let length = file.length_bytes();
     let before = fs::read(&path).unwrap();
@@ -92,15 +92,15 @@ fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
         (length - 1, "no row ends"),
         (0, "no row ends"),
     ] {
-        let error = Table::continue_at(&path, &header(FRAGMENT_COLUMNS), length).unwrap_err();
+        let error = Table::continue_at(&path, &header(&FragmentRow::COLUMNS), length).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(error.problem.contains(said), "{error}");
         assert_eq!(fs::read(&path).unwrap(), before);
     }
     let other = folder.path().join("other.csv");
-    fs::write(&other, format!("{}\n", header(TREE_COLUMNS))).unwrap();
-    let at = header(TREE_COLUMNS).len() as u64 + 1;
-    let error = Table::continue_at(&other, &header(FRAGMENT_COLUMNS), at).unwrap_err();
+    fs::write(&other, format!("{}\n", header(&TreeRow::COLUMNS))).unwrap();
+    let at = header(&TreeRow::COLUMNS).len() as u64 + 1;
+    let error = Table::continue_at(&other, &header(&FragmentRow::COLUMNS), at).unwrap_err();
     assert!(error.problem.contains("first line"), "{error}");
 }
 
@@ -119,7 +119,7 @@ proptest! {
         let rows = |time_s: f64, count: u32| (0..count).map(|id| fragment(time_s, id, numbers)).collect::<Vec<_>>();
         let write = |name: &str, interrupted: bool| {
             let path = folder.path().join(name);
-            let mut file = Table::create(&path, &header(FRAGMENT_COLUMNS)).unwrap();
+            let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
             for (number, count) in moments.iter().enumerate() {
                 if interrupted && number == at {
                     let length = file.length_bytes();
@@ -127,7 +127,7 @@ proptest! {
                     drop(file);
                     // A possible state of a row that was being written.
                     fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(half.as_bytes()).unwrap();
-                    file = Table::continue_at(&path, &header(FRAGMENT_COLUMNS), length).unwrap();
+                    file = Table::continue_at(&path, &header(&FragmentRow::COLUMNS), length).unwrap();
                 }
                 append_fragments(&mut file, &rows(number as f64, *count)).unwrap();
             }
@@ -137,7 +137,7 @@ proptest! {
         prop_assert_eq!(&write("part.csv", true), &text);
         // The numbers are read back unchanged.
         let mut lines = text.lines();
-        prop_assert_eq!(lines.next(), Some(&*header(FRAGMENT_COLUMNS)));
+        prop_assert_eq!(lines.next(), Some(&*header(&FragmentRow::COLUMNS)));
         let wanted = moments.iter().enumerate().flat_map(|(number, count)| (0..*count).map(move |id| (number, id)));
         let mut read = 0;
         for (line, (number, id)) in lines.zip(wanted) {
@@ -157,7 +157,7 @@ proptest! {
 fn thousands_of_fragments_of_one_moment_are_all_there() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = Table::create(&path, &header(FRAGMENT_COLUMNS)).unwrap();
+    let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
     let rows: Vec<FragmentRow> = (0..2500).map(|id| fragment(1.0, id, [1.0; 15])).collect();
     append_fragments(&mut file, &rows).unwrap();
     let text = fs::read_to_string(&path).unwrap();

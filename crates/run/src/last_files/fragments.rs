@@ -8,7 +8,7 @@ use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_results::columns::write_table;
 use dem_results::folder::names;
 use dem_results::summary::FragmentSummary;
-use dem_results::{ResultsFolder, TREE_COLUMNS, TreeRow};
+use dem_results::{ResultsFolder, TreeRow};
 
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
@@ -56,7 +56,7 @@ pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<
         particles: cluster.particles,
     };
     let rows = (0..).zip(&clusters.history).map(row);
-    write_table(&folder.file(names::FRAGMENT_TREE), TREE_COLUMNS, rows)
+    write_table(&folder.file(names::FRAGMENT_TREE), &TreeRow::COLUMNS, rows)
 }
 
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use dem_io::Result;
 use dem_results::columns::write_table;
 use dem_results::folder::names;
-use dem_results::{DISTRIBUTION_COLUMNS, FLOW_COLUMNS, MIXING_COLUMNS, MixingRow};
+use dem_results::{DistributionRow, FlowRow, MixingRow};
 
 use super::last_state::LastState;
 use crate::last_files::flows::flow_rows;
@@ -25,7 +25,7 @@ pub(super) fn fragments(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let rows = fragments.rows(&state.model, sieves_m);
     write_table(
         &folder.file(names::DISTRIBUTION),
-        DISTRIBUTION_COLUMNS,
+        &DistributionRow::COLUMNS,
         rows,
     )?;
     let plots = FRAGMENT_PLOTS.iter().map(|name| folder.plot(name));
@@ -45,7 +45,7 @@ pub(super) fn flow(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let interval_s = interval_s.unwrap_or(last.end_s / 20.0);
     let path = last.folder.file(names::FLOW);
     let rows = flow_rows(last.state, interval_s, last.end_s);
-    write_table(&path, FLOW_COLUMNS, rows)?;
+    write_table(&path, &FlowRow::COLUMNS, rows)?;
     Ok(vec![path])
 }
 
@@ -66,6 +66,6 @@ pub(super) fn mixing(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     };
     let rows = last.probes.iter().flat_map(of_probe);
     let path = last.folder.file(names::MIXING);
-    write_table(&path, MIXING_COLUMNS, rows)?;
+    write_table(&path, &MixingRow::COLUMNS, rows)?;
     Ok(vec![path])
 }

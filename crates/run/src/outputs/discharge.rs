@@ -3,7 +3,7 @@
 use dem_io::Result;
 use dem_results::columns::{header, lines};
 use dem_results::folder::names;
-use dem_results::{DISCHARGE_COLUMNS, DischargeRow, Table};
+use dem_results::{DischargeRow, Table};
 
 use super::{Changes, Opening, Output, Saved};
 use dem_engine::state::clusters::sizes::Discharged;
@@ -21,7 +21,7 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     }
     let table = opening.table(
         &opening.folder.file(names::DISCHARGE),
-        &header(DISCHARGE_COLUMNS),
+        &header(&DischargeRow::COLUMNS),
     )?;
     let written = state.population.discharged.len();
     Ok(Some(Box::new(Discharge { table, written })))
@@ -47,7 +47,7 @@ impl Output for Discharge {
             sieve_m: one.size.sieve_m,
         };
         let rows = all[self.written..].iter().map(row);
-        self.table.append(&lines(DISCHARGE_COLUMNS, rows))?;
+        self.table.append(&lines(&DischargeRow::COLUMNS, rows))?;
         self.written = all.len();
         Ok(())
     }

@@ -4,7 +4,7 @@ use dem_io::Result;
 use dem_io::text::exact;
 use dem_results::columns::header;
 use dem_results::folder::names;
-use dem_results::{EVENT_COLUMNS, Event, Table, event_lines};
+use dem_results::{Event, Table, event_lines};
 
 use super::{Changes, Opening, Output, Saved};
 use crate::new_step::NewStep;
@@ -19,7 +19,10 @@ const NAMED: usize = 8;
 struct EventTable(Table);
 
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
-    let table = opening.table(&opening.folder.file(names::EVENTS), &header(EVENT_COLUMNS))?;
+    let table = opening.table(
+        &opening.folder.file(names::EVENTS),
+        &header(&Event::COLUMNS),
+    )?;
     Ok(Some(Box::new(EventTable(table))))
 }
 

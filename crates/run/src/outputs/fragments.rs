@@ -3,7 +3,7 @@
 use dem_io::Result;
 use dem_results::columns::header;
 use dem_results::folder::names;
-use dem_results::{FRAGMENT_COLUMNS, FragmentRow, Table, append_fragments};
+use dem_results::{FragmentRow, Table, append_fragments};
 
 use super::{Moment, Opening, Output, Saved, TableEnd};
 use dem_engine::stages::clumps::motion::synchronous;
@@ -30,7 +30,7 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     Ok(Some(Box::new(Fragments {
         table: opening.table(
             &opening.folder.file(names::FRAGMENTS),
-            &header(FRAGMENT_COLUMNS),
+            &header(&FragmentRow::COLUMNS),
         )?,
         written: position.map_or(0, |(_, written)| written),
     })))

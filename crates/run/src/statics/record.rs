@@ -7,7 +7,7 @@ use dem_io::body::mass::BodyMass;
 use dem_results::columns::header;
 use dem_results::folder::names;
 use dem_results::summary::{EquilibriumSummary, Inputs, Summary, Verdict};
-use dem_results::{EVENT_COLUMNS, FrameFiles, ResultsFolder, SeriesFile, Table};
+use dem_results::{Event, FrameFiles, ResultsFolder, SeriesFile, Table};
 use dem_scene::Scene;
 
 use crate::last_files::End;
@@ -137,7 +137,7 @@ impl AtRest<'_> {
             self.state.time_s,
             &series::row(self.state, self.balance, measured),
         )?;
-        Table::create(&folder.file(names::EVENTS), &header(EVENT_COLUMNS))?;
+        Table::create(&folder.file(names::EVENTS), &header(&Event::COLUMNS))?;
         let walls = WallOutput::of(self.state);
         let mut frames = FrameFiles::create(folder, walls.files());
         order.write(self.state, &walls, &mut frames)?;
