@@ -1,7 +1,7 @@
 //! The page of a calibration: targets and results, curves, history, and the table over sizes.
 
 use dem_io::units::{show_quantity, significant};
-use dem_plots::{Axis, Column, Line, MOST_LINES, Page, Plot, Row, Table};
+use dem_plots::{Column, Line, MOST_LINES, Page, Plot, Row, Table};
 
 use crate::case::{Case, Round};
 use crate::record::Record;
@@ -80,33 +80,20 @@ fn curves(record: &Record, case: &Case) -> Plot {
         let named = record.packings.iter().zip(&round.trials);
         let of_trials = named.filter_map(|(name, trial)| {
             let points = trial.as_ref()?.curve.clone();
-            Some(Line {
-                name: name.clone(),
-                points,
-                dashed: false,
-            })
+            Some(Line::new(name.clone(), points))
         });
         lines.extend(of_trials.take(MOST_LINES - 2));
-        lines.push(Line {
-            name: "mean".to_owned(),
-            points: mean_curve(round),
-            dashed: true,
-        });
+        lines.push(Line::dashed("mean", mean_curve(round)));
     }
     if !record.wanted_curve.is_empty() {
-        lines.push(Line {
-            name: "measured".to_owned(),
-            points: record.wanted_curve.clone(),
-            dashed: true,
-        });
+        lines.push(Line::dashed("measured", record.wanted_curve.clone()));
     }
-    Plot {
-        title: "Load over displacement".to_owned(),
-        x: Axis::of("displacement (m)"),
-        y: Axis::of("load (N)"),
+    Plot::of(
+        "Load over displacement",
+        "displacement (m)",
+        "load (N)",
         lines,
-        ..Plot::default()
-    }
+    )
 }
 
 /// The rounds: numbers, and results of each packing.

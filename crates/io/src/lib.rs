@@ -28,5 +28,5 @@ mod xml;
 pub use body::Body;
 pub use bounds::Bounds;
 pub use diagnostic::{Diagnostic, Result};
-pub use input_file::read_input;
+pub use input_file::{explain_read, open_input, read_input};
 pub use surface::Surface;

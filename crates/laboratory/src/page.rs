@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use dem_io::units::show_quantity;
-use dem_plots::{Axis, Column, Line, MOST_LINES, Page, Plot, Row, Table};
+use dem_plots::{Column, Line, MOST_LINES, Page, Plot, Row, Table};
 
 use crate::evaluation::EvaluatedSpecimen;
 use crate::material::MeasuredMaterial;
@@ -166,27 +166,21 @@ pub fn regions_plot(one: &EvaluatedSpecimen) -> Plot {
     ];
     let lines = parts.into_iter().filter(|(_, rows)| rows.len() > 1);
     let mut lines: Vec<Line> = lines
-        .map(|(name, rows)| Line {
-            name: name.to_owned(),
-            points: points(rows),
-            dashed: false,
-        })
+        .map(|(name, rows)| Line::new(name, points(rows)))
         .collect();
-    lines.push(Line {
-        name: "fitted line".to_owned(),
-        points: vec![
+    lines.push(Line::dashed(
+        "fitted line",
+        vec![
             [0.0, 0.0],
             [regions.largest_n / regions.stiffness_n_m, regions.largest_n],
         ],
-        dashed: true,
-    });
-    Plot {
-        title: one.measured.name.clone(),
-        x: Axis::of("displacement (m)"),
-        y: Axis::of("load (N)"),
+    ));
+    Plot::of(
+        one.measured.name.clone(),
+        "displacement (m)",
+        "load (N)",
         lines,
-        ..Plot::default()
-    }
+    )
 }
 
 /// The mean curve over those of the valid specimens, scaled.
@@ -203,28 +197,17 @@ fn mean_plot(
             let displacement_m = one.measured.curve.travel_m[row] - one.regions.start_m;
             [displacement_m, factor * one.regions.corrected_n[row]]
         };
-        Line {
-            name: one.measured.name.clone(),
-            points: rows.map(point).collect(),
-            dashed: false,
-        }
+        Line::new(one.measured.name.clone(), rows.map(point).collect())
     };
     // The colours of the plot are one for the mean and one for each specimen.
     let mut lines: Vec<Line> = valid.take(MOST_LINES - 1).map(scaled).collect();
-    lines.push(Line {
-        name: "mean".to_owned(),
-        points: material
+    lines.push(Line::dashed(
+        "mean",
+        material
             .curve
             .iter()
             .map(|point| [point.displacement_m, point.load_n])
             .collect(),
-        dashed: true,
-    });
-    Plot {
-        title: "Mean curve".to_owned(),
-        x: Axis::of("displacement (m)"),
-        y: Axis::of("load (N)"),
-        lines,
-        ..Plot::default()
-    }
+    ));
+    Plot::of("Mean curve", "displacement (m)", "load (N)", lines)
 }

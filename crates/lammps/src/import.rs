@@ -10,9 +10,9 @@ use dem_io::body::stored_frame::{
     BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, PARTICLE_ID, RADIUS, VELOCITY,
 };
 use dem_io::disjoint::DisjointSets;
-use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result, read_input};
 use dem_report::report;
+use dem_results::folder::names;
 use dem_results::{
     Existing, Frame, FrameFiles, NamedArray, ResultsFolder, Values, WallFiles, WallFrame,
     WallTriangles, write_json,
@@ -180,9 +180,9 @@ fn write_summary(target: &ResultsFolder, manifest: &Manifest, came: &Came) -> Re
         "simulated_s": came.last_s,
         "verdict": { "sound": false, "warnings": warnings },
     });
-    write_json(&target.summary(), &summary)?;
+    write_json(&target.file(names::SUMMARY), &summary)?;
     let page = report(target.path(), &summary.to_string())?;
-    write_file(&target.report(), |out| out.write_all(page.as_bytes()))
+    target.write(names::REPORT, &page)
 }
 
 impl Came {

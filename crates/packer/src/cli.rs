@@ -20,10 +20,10 @@ use dem_io::safe_write::remove_unfinished;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Diagnostic, Result};
 use dem_terminal::program::{print_completions, print_man_page, take_size_limits_as_errors};
+use dem_terminal::progress::progress_bar;
 use dem_terminal::standard_output::{
     write_standard_error, write_standard_json, write_standard_output,
 };
-use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -102,11 +102,8 @@ fn pack_and_write(
     } else {
         Some(std::io::stderr())
     };
-    let bar = if person.is_some() && std::io::stderr().is_terminal() {
-        progress_bar()
-    } else {
-        ProgressBar::hidden()
-    };
+    let template = "{msg:14} [{bar:40}] {percent:>3} %  {eta} left";
+    let bar = progress_bar(arguments.quiet, 1000, template);
     let progress = |stage: &str, done: f64| {
         bar.set_message(stage.to_owned());
         bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
@@ -192,14 +189,4 @@ fn info(file: &Path, reading: &Reading, json: bool) -> Result<()> {
         return write_standard_json(&summary);
     }
     write_standard_output(|out| write!(out, "{summary}"))
-}
-
-fn progress_bar() -> ProgressBar {
-    let bar = ProgressBar::new(1000);
-    if let Ok(style) =
-        ProgressStyle::with_template("{msg:14} [{bar:40}] {percent:>3} %  {eta} left")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar
 }

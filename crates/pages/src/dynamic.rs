@@ -1,11 +1,11 @@
 //! doc/dynamic-tests.md: t10 and sizes of a disc under a drop weight.
 
 use dem_io::units::significant;
-use dem_plots::{Axis, Marks, Plot, Point};
+use dem_plots::{Axis, Line, Marks, Plot, Point};
 
 use crate::bench::{Bench, Failed, Run};
 use crate::cells::ends;
-use crate::plots::{dashed, draw, plot};
+use crate::plots::draw;
 use crate::table::{Table, write};
 
 const ENERGIES: [&str; 2] = ["impact energy", "absorbed energy"];
@@ -48,8 +48,8 @@ pub(crate) fn heights(bench: &Bench) -> Result<(), Failed> {
         let [first, last] = ends(&energies);
         let along = (0..=100).map(|i| first * (last / first).powf(0.01 * f64::from(i)));
         let along = along.map(|e| [e, 100.0 * law.t10(e)]);
-        lines.push(dashed(
-            &format!("A (1 - exp(-b E)), {name}"),
+        lines.push(Line::dashed(
+            format!("A (1 - exp(-b E)), {name}"),
             along.collect(),
         ));
         let at = |[e, t10]: &[f64; 2]| Point {
@@ -67,7 +67,7 @@ pub(crate) fn heights(bench: &Bench) -> Result<(), Failed> {
     let plot = Plot {
         x: Axis::log("energy over the mass of the disc (kWh/t)"),
         marks,
-        ..plot(title, "", "t10 (%)", lines)
+        ..Plot::of(title, "", "t10 (%)", lines)
     };
     draw("doc/t10.svg", &plot)?;
     write(&[table, laws])

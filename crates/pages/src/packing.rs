@@ -15,7 +15,7 @@ use dem_plots::{Marks, Plot, Point};
 
 use crate::bench::{Bench, Failed};
 use crate::cells::{columns, mean, median};
-use crate::plots::{draw, plot};
+use crate::plots::draw;
 use crate::shapes::{shape, sizes, surface_of};
 use crate::table::{Table, write};
 
@@ -146,7 +146,7 @@ fn plots(means: &[[f64; 9]]) -> Result<(), Failed> {
                 chains: vec![means.iter().map(at).collect()],
                 ..Marks::default()
             }],
-            ..plot(title, x, label, Vec::new())
+            ..Plot::of(title, x, label, Vec::new())
         };
         draw(&format!("doc/densify-{name}.svg"), &plot)?;
     }

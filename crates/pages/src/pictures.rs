@@ -1,10 +1,10 @@
 //! Pictures of pages that come of studies and have no table.
 
-use dem_plots::{Axis, Marks, Plot, Point};
+use dem_plots::{Axis, Line, Marks, Plot, Point};
 use dem_run::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 
 use crate::bench::{Bench, Failed, root};
-use crate::plots::{dashed, draw, line, plot};
+use crate::plots::draw;
 
 /// `doc/failure-models.svg` of doc/studies.md: load over travel with each failure model.
 pub(crate) fn failure_models(bench: &Bench) -> Result<(), Failed> {
@@ -13,10 +13,10 @@ pub(crate) fn failure_models(bench: &Bench) -> Result<(), Failed> {
         let curve = run.columns("force-displacement.csv", ["displacement_m", "load_n"])?;
         let shown = curve.iter().step_by(curve.len() / 400 + 1);
         let shown = shown.map(|[travel_m, load_n]| [1e3 * travel_m, *load_n]);
-        lines.push(line(&run.settings[0], shown.collect()));
+        lines.push(Line::new(&run.settings[0], shown.collect()));
     }
     let title = "one bending test with each failure model";
-    let plot = plot(title, "travel (mm)", "load (N)", lines);
+    let plot = Plot::of(title, "travel (mm)", "load (N)", lines);
     draw("doc/failure-models.svg", &plot)
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn strain_rate(bench: &Bench) -> Result<(), Failed> {
         x: Axis::log("strain rate (1/s)"),
         marks: marks.into(),
         filled: Some(["in equilibrium", "not in equilibrium: not valid"].map(str::to_owned)),
-        ..plot(title, "", y, vec![dashed("eq. 20", theory.collect())])
+        ..Plot::of(title, "", y, vec![Line::dashed("eq. 20", theory.collect())])
     };
     draw("doc/strain-rate.svg", &plot)
 }

@@ -8,11 +8,12 @@ use dem_laboratory::Statistic;
 use dem_pack::{
     BodySettings, BondSettings, Fabric, PackSettings, Spheres, bond_fabric, bond_spheres, make_body,
 };
+use dem_plots::{Line, Plot};
 use dem_results::folder::{frame_in, frames_in};
 
 use crate::bench::{Bench, Failed, ONE_THREAD};
 use crate::cells::ends;
-use crate::plots::{draw, line, plot};
+use crate::plots::draw;
 use crate::shapes::{shape, sizes};
 use crate::table::{Table, write};
 
@@ -66,13 +67,13 @@ pub(crate) fn pressing(bench: &Bench) -> Result<(), Failed> {
         }
         if coarser == 1.0 {
             lines.extend([
-                line(FRONT, profile(&front)),
-                line(PRESSED, profile(&pressed)),
+                Line::new(FRONT, profile(&front)),
+                Line::new(PRESSED, profile(&pressed)),
             ]);
         }
     }
     let [title, x] = ["Solid density over the height", "height (mm)"];
-    let plot = plot(title, x, "solid density (kg/m3)", lines);
+    let plot = Plot::of(title, x, "solid density (kg/m3)", lines);
     draw("doc/pressing-density.svg", &plot)?;
     write(&[table])
 }

@@ -1,13 +1,14 @@
 //! doc/round-robin.md: silo, drum and penetration of the round robin of Dosta et al. 2024 beside
 //! closed forms and numbers of others.
 
+use dem_plots::{Line, Plot};
 use std::f64::consts::PI;
 
 use dem_laboratory::Line as Fit;
 
 use crate::bench::{Bench, Failed, Run, sets};
 use crate::cells::{change, ends, mean, mean_and_range};
-use crate::plots::{dashed, draw, line, plot};
+use crate::plots::draw;
 use crate::table::{Table, write};
 
 const GRAVITY_M_S2: f64 = 9.81;
@@ -248,9 +249,9 @@ pub(crate) fn drum(bench: &Bench) -> Result<(), Failed> {
         bed.row([index, "0 apart, 1 mixed at random".to_owned()]);
     }
     let large = turning(&run, "large_in_zone_2_kg")?;
-    let lines = vec![line("M1", small), line("M2", large)];
+    let lines = vec![Line::new("M1", small), Line::new("M2", large)];
     let title = "mass in the lower quarter on the sinking side";
-    let plot = plot(
+    let plot = Plot::of(
         title,
         "time since the start of the drum (s)",
         "mass (kg)",
@@ -395,18 +396,18 @@ pub(crate) fn penetration(bench: &Bench) -> Result<(), Failed> {
         // Sizes at the same speed: each line of a plot has a colour of its own.
         if case.speed_m_s > 4.0 && !case.spheres.contains(',') {
             let name = format!("spheres of {}", case.spheres);
-            lines.push(line(&name, displacements(&fall.heights)?));
+            lines.push(Line::new(name, displacements(&fall.heights)?));
         }
         if at + 1 == CASES.len() {
             let every_ms = fall.law.iter().step_by(1000);
             let law = every_ms.map(|[t, depth]| [fall.falls_s + t, -1e3 * (fall.gap_m + depth)]);
-            lines.push(dashed("Katsuragi and Durian 2013", law.collect()));
+            lines.push(Line::dashed("Katsuragi and Durian 2013", law.collect()));
         }
     }
     let at_rest = vec![[0.08, -90.7], [0.13, -90.7]];
-    lines.push(dashed("LIGGGHTS and MUSEN, at rest", at_rest));
+    lines.push(Line::dashed("LIGGGHTS and MUSEN, at rest", at_rest));
     let title = "a ball that hits a bed of spheres at 5 m/s";
-    let plot = plot(title, "time (s)", "displacement (mm)", lines);
+    let plot = Plot::of(title, "time (s)", "displacement (mm)", lines);
     draw("doc/round-robin-penetration.svg", &plot)?;
     write(&[table])
 }

@@ -30,6 +30,19 @@ pub struct Plot {
     pub if_empty: String,
 }
 
+impl Plot {
+    /// Lines over linear axes of these quantities and units: `time (s)`.
+    pub fn of(title: impl Into<String>, x: &str, y: &str, lines: Vec<Line>) -> Self {
+        Self {
+            title: title.into(),
+            x: Axis::of(x),
+            y: Axis::of(y),
+            lines,
+            ..Self::default()
+        }
+    }
+}
+
 /// An axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Axis {
@@ -78,8 +91,27 @@ pub struct Line {
     pub name: String,
     /// Points `[x, y]` in the units of the axes.
     pub points: Vec<[f64; 2]>,
-    /// True if dashed, for example for a reference solution.
+    /// True if dashed.
     pub dashed: bool,
+}
+
+impl Line {
+    /// A solid line.
+    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            dashed: false,
+        }
+    }
+
+    /// A dashed line, for example for a reference solution.
+    pub fn dashed(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Self {
+            dashed: true,
+            ..Self::new(name, points)
+        }
+    }
 }
 
 /// Marks of one kind, with a common colour and shape.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use dem_io::{Diagnostic, Result};
+use dem_io::{Diagnostic, Result, explain_read};
 use dem_results::Summary;
 
 use crate::view::Subject;
@@ -30,10 +30,7 @@ impl Folder {
                 ));
             }
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
-            Err(error) => {
-                let problem = format!("cannot be read: {error}");
-                return Err(Diagnostic::input(index.display().to_string(), problem, ""));
-            }
+            Err(error) => return Err(explain_read(&index, &error, "a file")),
         };
         let frame = |line: &str| {
             let time_s = attribute(line, "timestep")?.parse().ok()?;
@@ -82,10 +79,7 @@ impl Folder {
         };
         paths.sort_by_key(|path| (place(path), path.clone()));
         let read = |path: &PathBuf| {
-            fs::read_to_string(path).map_err(|error| {
-                let problem = format!("cannot be read: {error}");
-                Diagnostic::input(path.display().to_string(), problem, "")
-            })
+            fs::read_to_string(path).map_err(|error| explain_read(path, &error, "a plot"))
         };
         paths.iter().map(read).collect()
     }

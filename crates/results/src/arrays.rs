@@ -7,6 +7,7 @@ use std::path::Path;
 
 use dem_io::body::stored_frame::{BODY_NAMES, TIME};
 use dem_io::diagnostic::{Diagnostic, Result};
+use dem_io::open_input;
 pub use dem_io::vtp::Array;
 use dem_io::vtp::{Reader, Shape};
 
@@ -54,14 +55,7 @@ pub fn read_all_arrays(path: &Path) -> Result<Arrays> {
 
 fn open_and_read(path: &Path, is_wanted: &dyn Fn(&str) -> bool) -> Result<Arrays> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
-    let file = File::open(path).map_err(|error| {
-        within(Diagnostic::input(
-            "",
-            format!("cannot be opened: {error}"),
-            "",
-        ))
-    })?;
-    read(BufReader::with_capacity(1 << 16, file), is_wanted).map_err(within)
+    read(open_input(path)?, is_wanted).map_err(within)
 }
 
 fn read(mut input: BufReader<File>, is_wanted: &dyn Fn(&str) -> bool) -> Result<Arrays> {

@@ -1,21 +1,11 @@
 //! What leaves through outlets, as one CSV table that grows; and the size distribution of all
 //! fragments, as one that is written at the end.
 //!
-//! Columns: see [`COLUMNS`] and [`DISTRIBUTION_COLUMNS`]. Every number reads back as the same bits.
+//! Columns: see [`DischargeRow::COLUMNS`] and [`DistributionRow::COLUMNS`].
 
-use std::path::Path;
-
+use super::columns::Column;
 use super::growing::field;
-use dem_io::diagnostic::Result;
-use dem_io::safe_write::write_file;
 use dem_io::text::exact;
-
-/// The first line of the table of what leaves. Length, width and thickness are those of the box
-/// along the principal axes, the longest first.
-pub const COLUMNS: &str = "time_s,fragment_id,body,material,outlet,mass_kg,equivalent_diameter_m,length_m,width_m,thickness_m,sieve_m";
-
-/// The first line of the size distribution.
-pub const DISTRIBUTION_COLUMNS: &str = "body,location,sieve_m,passing_kg,passing_fraction,resolved";
 
 /// A fragment or a body that has left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,24 +30,24 @@ pub struct DischargeRow<'a> {
     pub sieve_m: f64,
 }
 
-/// Lines of the table of what leaves.
-pub fn discharge_lines<'a>(rows: impl Iterator<Item = DischargeRow<'a>>) -> String {
-    rows.map(|row| line(&row)).collect()
-}
-
-fn line(row: &DischargeRow<'_>) -> String {
-    let [length, width, thickness] = row.box_lengths_m.map(exact);
-    format!(
-        "{},{},{},{},{},{},{},{length},{width},{thickness},{}\n",
-        exact(row.time_s),
-        row.fragment_id,
-        field(row.body),
-        field(row.material),
-        field(row.outlet),
-        exact(row.mass_kg),
-        exact(row.equivalent_diameter_m),
-        exact(row.sieve_m),
-    )
+impl DischargeRow<'_> {
+    /// The columns of its table. Length, width and thickness are those of the box along the
+    /// principal axes, the longest first.
+    pub const COLUMNS: [Column<Self>; 11] = [
+        ("time_s", |row| exact(row.time_s)),
+        ("fragment_id", |row| row.fragment_id.to_string()),
+        ("body", |row| field(row.body)),
+        ("material", |row| field(row.material)),
+        ("outlet", |row| field(row.outlet)),
+        ("mass_kg", |row| exact(row.mass_kg)),
+        ("equivalent_diameter_m", |row| {
+            exact(row.equivalent_diameter_m)
+        }),
+        ("length_m", |row| exact(row.box_lengths_m[0])),
+        ("width_m", |row| exact(row.box_lengths_m[1])),
+        ("thickness_m", |row| exact(row.box_lengths_m[2])),
+        ("sieve_m", |row| exact(row.sieve_m)),
+    ];
 }
 
 /// A point of a size distribution.
@@ -78,22 +68,14 @@ pub struct DistributionRow<'a> {
     pub resolved: bool,
 }
 
-/// Writes the size distribution to the file `path`, completely or not at all.
-pub fn write_distribution(path: &Path, rows: &[DistributionRow<'_>]) -> Result<()> {
-    write_file(path, |out| {
-        writeln!(out, "{DISTRIBUTION_COLUMNS}")?;
-        for row in rows {
-            writeln!(
-                out,
-                "{},{},{},{},{},{}",
-                field(row.body),
-                field(row.location),
-                exact(row.sieve_m),
-                exact(row.passing_kg),
-                exact(row.passing_fraction),
-                u8::from(row.resolved)
-            )?;
-        }
-        Ok(())
-    })
+impl DistributionRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 6] = [
+        ("body", |row| field(row.body)),
+        ("location", |row| field(row.location)),
+        ("sieve_m", |row| exact(row.sieve_m)),
+        ("passing_kg", |row| exact(row.passing_kg)),
+        ("passing_fraction", |row| exact(row.passing_fraction)),
+        ("resolved", |row| u8::from(row.resolved).to_string()),
+    ];
 }

@@ -1,16 +1,11 @@
 //! Events of a run (broken bonds, replaced bodies, changes of the plan) as one CSV table that
 //! grows.
 //!
-//! Columns: see [`COLUMNS`]. Values that do not apply to an event are empty. Every number reads
-//! back as the same bits.
+//! Columns: see [`Event::COLUMNS`]. Values that do not apply to an event are empty.
 
-use std::fmt::{Display, Write};
-
+use super::columns::{Column, known, lines};
 use super::growing::field;
-
-/// The first line of the file.
-pub const COLUMNS: &str =
-    "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail";
+use dem_io::text::exact;
 
 /// One event.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,38 +32,29 @@ pub struct Event<'a> {
     pub detail: &'a str,
 }
 
+impl Event<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 12] = [
+        ("step", |row| row.step.to_string()),
+        ("time_s", |row| exact(row.time_s)),
+        ("event", |row| field(row.kind)),
+        ("bond", |row| known(row.bond)),
+        ("particle_a", |row| known(row.particle_a)),
+        ("particle_b", |row| known(row.particle_b)),
+        ("x_m", |row| place(row, 0)),
+        ("y_m", |row| place(row, 1)),
+        ("z_m", |row| place(row, 2)),
+        ("cause", |row| field(row.cause)),
+        ("energy_j", |row| known(row.energy_j.map(exact))),
+        ("detail", |row| field(row.detail)),
+    ];
+}
+
 /// Lines of the table of events.
-pub fn event_lines(events: &[Event<'_>]) -> String {
-    events.iter().map(row).collect()
+pub fn event_lines<'a>(events: impl IntoIterator<Item = Event<'a>>) -> String {
+    lines(&Event::COLUMNS, events)
 }
 
-fn row(event: &Event<'_>) -> String {
-    let [x, y, z] = event.position_m.map_or([None; 3], |place| place.map(Some));
-    let mut row = String::new();
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        row,
-        "{},{},{},{},{},{},{},{},{},{},{},{}",
-        event.step,
-        exact(Some(event.time_s)),
-        field(event.kind),
-        known(event.bond),
-        known(event.particle_a),
-        known(event.particle_b),
-        exact(x),
-        exact(y),
-        exact(z),
-        field(event.cause),
-        exact(event.energy_j),
-        field(event.detail),
-    );
-    row
-}
-
-fn known(value: Option<impl Display>) -> String {
-    value.map(|value| value.to_string()).unwrap_or_default()
-}
-
-fn exact(value: Option<f64>) -> String {
-    value.map(dem_io::text::exact).unwrap_or_default()
+fn place(event: &Event<'_>, axis: usize) -> String {
+    known(event.position_m.map(|place_m| exact(place_m[axis])))
 }

@@ -1,18 +1,9 @@
 //! Mass flows over time and the cells of mixtures, as CSV tables that are written at the end of a
 //! run. Every number reads back as the same bits.
 
-use std::path::Path;
-
+use super::columns::Column;
 use super::growing::field;
-use dem_io::diagnostic::Result;
-use dem_io::safe_write::write_file;
 use dem_io::text::exact;
-
-/// The first line of the table of mass flows.
-pub const FLOW_COLUMNS: &str = "time_s,body,outlet,pieces,mass_kg,flow_kg_s";
-
-/// The first line of the table of mixtures.
-pub const MIXING_COLUMNS: &str = "measure,x_m,y_m,z_m,mass_kg,fraction";
 
 /// What has come or left in an interval of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +22,18 @@ pub struct FlowRow<'a> {
     pub flow_kg_s: f64,
 }
 
+impl FlowRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 6] = [
+        ("time_s", |row| exact(row.time_s)),
+        ("body", |row| field(row.body)),
+        ("outlet", |row| field(row.outlet)),
+        ("pieces", |row| row.pieces.to_string()),
+        ("mass_kg", |row| exact(row.mass_kg)),
+        ("flow_kg_s", |row| exact(row.flow_kg_s)),
+    ];
+}
+
 /// A cell of a mixture at the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MixingRow<'a> {
@@ -44,40 +47,14 @@ pub struct MixingRow<'a> {
     pub fraction: f64,
 }
 
-/// Writes mass flows to the file `path`, completely or not at all.
-pub fn write_flows(path: &Path, rows: &[FlowRow<'_>]) -> Result<()> {
-    write_file(path, |out| {
-        writeln!(out, "{FLOW_COLUMNS}")?;
-        for row in rows {
-            writeln!(
-                out,
-                "{},{},{},{},{},{}",
-                exact(row.time_s),
-                field(row.body),
-                field(row.outlet),
-                row.pieces,
-                exact(row.mass_kg),
-                exact(row.flow_kg_s)
-            )?;
-        }
-        Ok(())
-    })
-}
-
-/// Writes the cells of mixtures to the file `path`, completely or not at all.
-pub fn write_mixing(path: &Path, rows: &[MixingRow<'_>]) -> Result<()> {
-    write_file(path, |out| {
-        writeln!(out, "{MIXING_COLUMNS}")?;
-        for row in rows {
-            let [x, y, z] = row.centre_m.map(exact);
-            writeln!(
-                out,
-                "{},{x},{y},{z},{},{}",
-                field(row.measure),
-                exact(row.mass_kg),
-                exact(row.fraction)
-            )?;
-        }
-        Ok(())
-    })
+impl MixingRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 6] = [
+        ("measure", |row| field(row.measure)),
+        ("x_m", |row| exact(row.centre_m[0])),
+        ("y_m", |row| exact(row.centre_m[1])),
+        ("z_m", |row| exact(row.centre_m[2])),
+        ("mass_kg", |row| exact(row.mass_kg)),
+        ("fraction", |row| exact(row.fraction)),
+    ];
 }

@@ -4,7 +4,7 @@ mod create;
 mod disk;
 mod lock;
 mod look;
-mod names;
+pub mod names;
 mod paths;
 mod remove;
 mod write;

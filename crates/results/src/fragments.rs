@@ -1,23 +1,13 @@
 //! Fragments of breaking bodies: their motion at chosen moments, as one CSV table that grows, and
 //! their origin, as one that is written at the end.
 //!
-//! Columns: see [`COLUMNS`] and [`TREE_COLUMNS`]. Values that a fragment does not have are empty.
-//! Every number reads back as the same bits, except that a zero has no sign.
+//! Columns: see [`FragmentRow::COLUMNS`] and [`TreeRow::COLUMNS`]. Values that a fragment does not
+//! have are empty. A zero has no sign.
 
-use std::fmt::{Display, Write};
-use std::path::Path;
-
+use super::columns::{Column, known, lines};
 use super::growing::{Table, field};
 use dem_io::diagnostic::Result;
-use dem_io::safe_write::write_file;
 use dem_io::text::exact;
-
-/// The first line of the table of moments.
-pub const COLUMNS: &str = "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,\
-                           wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m,body,material";
-
-/// The first line of the fragment tree.
-pub const TREE_COLUMNS: &str = "fragment_id,parent_id,created_s,ended_s,particles";
 
 /// Number of rows that are passed to the system together.
 const AT_ONCE: usize = 1000;
@@ -25,6 +15,8 @@ const AT_ONCE: usize = 1000;
 /// A fragment at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FragmentRow<'a> {
+    /// The moment, s.
+    pub time_s: f64,
     /// Its number, which is never reused.
     pub fragment_id: u32,
     /// The fragment from which it broke off.
@@ -51,51 +43,47 @@ pub struct FragmentRow<'a> {
     pub material: &'a str,
 }
 
+impl FragmentRow<'_> {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 21] = [
+        ("time_s", |row| exact(row.time_s)),
+        ("fragment_id", |row| row.fragment_id.to_string()),
+        ("parent_id", |row| known(row.parent_id)),
+        ("particles", |row| row.particles.to_string()),
+        ("mass_kg", |row| number(row.mass_kg)),
+        ("x_m", |row| number(row.centre_m[0])),
+        ("y_m", |row| number(row.centre_m[1])),
+        ("z_m", |row| number(row.centre_m[2])),
+        ("vx_m_s", |row| number(row.velocity_m_s[0])),
+        ("vy_m_s", |row| number(row.velocity_m_s[1])),
+        ("vz_m_s", |row| number(row.velocity_m_s[2])),
+        ("wx_rad_s", |row| number(row.angular_velocity_rad_s[0])),
+        ("wy_rad_s", |row| number(row.angular_velocity_rad_s[1])),
+        ("wz_rad_s", |row| number(row.angular_velocity_rad_s[2])),
+        ("fx_n", |row| number(row.force_n[0])),
+        ("fy_n", |row| number(row.force_n[1])),
+        ("fz_n", |row| number(row.force_n[2])),
+        ("equivalent_diameter_m", |row| {
+            number(row.equivalent_diameter_m)
+        }),
+        ("box_diagonal_m", |row| number(row.box_diagonal_m)),
+        ("body", |row| field(row.body)),
+        ("material", |row| field(row.material)),
+    ];
+}
+
 /// Appends the fragments of one moment to their table. They are in the file when this returns. If
 /// the disk is full, earlier moments are kept, and possibly some complete rows of this one.
-pub fn append_fragments(
-    table: &mut Table,
-    time_s: f64,
-    fragments: &[FragmentRow<'_>],
-) -> Result<()> {
+pub fn append_fragments(table: &mut Table, fragments: &[FragmentRow<'_>]) -> Result<()> {
     for some in fragments.chunks(AT_ONCE) {
-        let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
-        table.append(&rows)?;
+        table.append(&lines(&FragmentRow::COLUMNS, some.iter().copied()))?;
     }
     Ok(())
 }
 
-fn row(time_s: f64, fragment: &FragmentRow<'_>) -> String {
-    let mut row = format!(
-        "{},{},{},{}",
-        exact(time_s),
-        fragment.fragment_id,
-        known(fragment.parent_id),
-        fragment.particles
-    );
-    let [mass, size, extent] = [
-        fragment.mass_kg,
-        fragment.equivalent_diameter_m,
-        fragment.box_diagonal_m,
-    ];
-    let vectors = [
-        fragment.centre_m,
-        fragment.velocity_m_s,
-        fragment.angular_velocity_rad_s,
-        fragment.force_n,
-    ];
-    let numbers = [mass].into_iter().chain(vectors.into_iter().flatten());
-    for number in numbers.chain([size, extent]) {
-        // Writing to a string cannot fail. Adding 0 removes the sign of a zero.
-        let _ = write!(row, ",{}", exact(number + 0.0));
-    }
-    let _ = writeln!(
-        row,
-        ",{},{}",
-        field(fragment.body),
-        field(fragment.material)
-    );
-    row
+fn number(value: f64) -> String {
+    // Adding 0 removes the sign of a zero.
+    exact(value + 0.0)
 }
 
 /// A present or former fragment.
@@ -113,23 +101,13 @@ pub struct TreeRow {
     pub particles: u32,
 }
 
-/// Writes the fragment tree to the file `path`, completely or not at all.
-pub fn write_fragment_tree(path: &Path, rows: impl Iterator<Item = TreeRow>) -> Result<()> {
-    write_file(path, |out| {
-        writeln!(out, "{TREE_COLUMNS}")?;
-        for row in rows {
-            let (parent, ended) = (known(row.parent_id), known(row.ended_s.map(exact)));
-            let created = exact(row.created_s);
-            writeln!(
-                out,
-                "{},{parent},{created},{ended},{}",
-                row.fragment_id, row.particles
-            )?;
-        }
-        Ok(())
-    })
-}
-
-fn known(value: Option<impl Display>) -> String {
-    value.map(|value| value.to_string()).unwrap_or_default()
+impl TreeRow {
+    /// The columns of its table.
+    pub const COLUMNS: [Column<Self>; 5] = [
+        ("fragment_id", |row| row.fragment_id.to_string()),
+        ("parent_id", |row| known(row.parent_id)),
+        ("created_s", |row| exact(row.created_s)),
+        ("ended_s", |row| known(row.ended_s.map(exact))),
+        ("particles", |row| row.particles.to_string()),
+    ];
 }

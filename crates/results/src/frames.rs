@@ -7,6 +7,7 @@
 
 use std::io::{self, Write};
 
+use super::folder::names;
 use super::folder::{ResultsFolder, fixed_walls_name, frame_name, walls_name};
 use super::walls::{WallFrame, WallTriangles, write_fixed_walls, write_walls};
 use dem_io::body::stored_frame::{BODY_NAMES, TIME};
@@ -176,7 +177,7 @@ impl FrameFiles {
     }
 
     fn write_index(&self) -> Result<()> {
-        write_file(&self.folder.frames_index(), |out| {
+        write_file(&self.folder.file(names::INDEX), |out| {
             writeln!(
                 out,
                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>"

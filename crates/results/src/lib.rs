@@ -6,11 +6,12 @@
 
 pub mod arrays;
 pub mod checkpoint;
-pub mod discharge;
+pub mod columns;
+pub(crate) mod discharge;
 pub(crate) mod events;
-pub mod flows;
+pub(crate) mod flows;
 pub mod folder;
-pub mod fragments;
+pub(crate) mod fragments;
 pub(crate) mod frames;
 mod growing;
 pub(crate) mod json;
@@ -21,11 +22,11 @@ pub mod summary;
 pub(crate) mod walls;
 
 pub use arrays::{Array, Arrays, read_all_arrays, read_arrays};
-pub use discharge::{DischargeRow, DistributionRow, discharge_lines, write_distribution};
-pub use events::{COLUMNS as EVENT_COLUMNS, Event, event_lines};
-pub use flows::{FlowRow, MixingRow, write_flows, write_mixing};
+pub use discharge::{DischargeRow, DistributionRow};
+pub use events::{Event, event_lines};
+pub use flows::{FlowRow, MixingRow};
 pub use folder::{Existing, ResultsFolder};
-pub use fragments::{FragmentRow, TreeRow, append_fragments, write_fragment_tree};
+pub use fragments::{FragmentRow, TreeRow, append_fragments};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, WallFiles, write_frame};
 pub use growing::Table;
 pub use json::{from_json, write_json};

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use super::folder::ResultsFolder;
+use super::folder::names;
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::write_file;
 
@@ -57,8 +58,8 @@ impl PictureFiles {
     /// Writes some pictures side by side to `film-strip.png`, and one after the other to
     /// `film.png`: both as the bytes of a PNG file. Replaces earlier ones.
     pub fn write_film(&self, strip: &[u8], film: &[u8]) -> Result<()> {
-        write_bytes(&self.folder.film_strip(), strip)?;
-        write_bytes(&self.folder.film(), film)
+        write_bytes(&self.folder.file(names::FILM_STRIP), strip)?;
+        write_bytes(&self.folder.file(names::FILM), film)
     }
 }
 

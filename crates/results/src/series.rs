@@ -3,13 +3,13 @@
 //! The first line names the columns and their units: `time_s,kinetic_energy_j,...`. Every number
 //! reads back as the same bits.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, ErrorKind};
+use std::io::BufRead;
 use std::path::Path;
 
 use super::growing::{Table, field, fields};
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::lines::{Lines, float, on_line};
+use dem_io::open_input;
 use dem_io::text::exact;
 
 /// The file of the time series.
@@ -73,15 +73,7 @@ pub struct Series {
 /// incomplete or not numeric.
 pub fn read_series(path: &Path) -> Result<Series> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
-    let file = File::open(path).map_err(|error| {
-        within(match error.kind() {
-            ErrorKind::NotFound => {
-                Diagnostic::input("", "there is no such file", "check its name and folder")
-            }
-            _ => Diagnostic::input("", format!("cannot be opened: {error}"), ""),
-        })
-    })?;
-    read_lines(&mut BufReader::new(file)).map_err(within)
+    read_lines(&mut open_input(path)?).map_err(within)
 }
 
 fn read_lines(input: &mut dyn BufRead) -> Result<Series> {

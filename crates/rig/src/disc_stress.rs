@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use dem_laboratory::Specimen;
 use dem_laboratory::theory::disc_diameter_pa;
-use dem_plots::{Axis, Line, Plot};
+use dem_plots::{Line, Plot};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -176,19 +176,18 @@ pub(super) fn plot(slabs: &[Slab], load_n: f64) -> Plot {
             .collect(),
         dashed,
     };
-    Plot {
-        title: format!(
+    Plot::of(
+        format!(
             "stress over the loaded diameter at {}",
             dem_io::units::show_quantity(load_n, "N")
         ),
-        x: Axis::of("distance from the centre (m)"),
-        y: Axis::of("stress (Pa)"),
-        lines: vec![
+        "distance from the centre (m)",
+        "stress (Pa)",
+        vec![
             line("across the diameter", false, &|slab| slab.stress_pa[0]),
             line("along it", false, &|slab| slab.stress_pa[1]),
             line("closed form across", true, &|slab| slab.theory_pa[0]),
             line("closed form along", true, &|slab| slab.theory_pa[1]),
         ],
-        ..Plot::default()
-    }
+    )
 }

@@ -6,8 +6,9 @@ use dem_io::Result;
 use dem_laboratory::Specimen;
 use dem_laboratory::figure::Figure;
 use dem_laboratory::test_result::TestResult;
-use dem_plots::{Axis, Line, Plot};
+use dem_plots::{Line, Plot};
 use dem_results::ResultsFolder;
+use dem_results::folder::names;
 use dem_scene::{Bars, Test};
 
 use super::crack::{CrackPicture, crack_map};
@@ -61,29 +62,20 @@ pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Resul
         for (name, plot) in plots {
             folder.write_plot(name, &plot.svg().file())?;
         }
-        folder.write_bar_signals(&signals_csv(files.record, bars))?;
+        folder.write(names::BAR_SIGNALS, &signals_csv(files.record, bars))?;
         if let Some(gauges) = bars.gauges {
             let signals = gauge_signals(files.record, bars, gauges);
             folder.write_plot("gauge-signals", &gauge_plot(&signals).svg().file())?;
-            folder.write_gauge_signals(&gauges_csv(&signals))?;
+            folder.write(names::GAUGE_SIGNALS, &gauges_csv(&signals))?;
         }
     }
     let slabs = slabs(files.picture.setup, &files.record.disc);
     if !slabs.is_empty() {
         let plot = disc_stress::plot(&slabs, files.record.disc.load_n);
         folder.write_plot("disc-stress", &plot.svg().file())?;
-        folder.write_disc_stress(&disc_stress::table(&slabs))?;
+        folder.write(names::DISC_STRESS, &disc_stress::table(&slabs))?;
     }
-    folder.write_test_curve(&curve_csv(files.record, play_m))
-}
-
-/// A line of a plot.
-fn line(name: &str, points: Vec<[f64; 2]>, dashed: bool) -> Line {
-    Line {
-        name: name.to_owned(),
-        points,
-        dashed,
-    }
+    folder.write(names::TEST_CURVE, &curve_csv(files.record, play_m))
 }
 
 /// The first line of `bar-signals.csv`.
@@ -130,20 +122,15 @@ fn gauge_plot(signals: &[GaugeSignal]) -> Plot {
     let points = |of: &dyn Fn(&GaugeSignal) -> f64| -> Vec<[f64; 2]> {
         signals.iter().map(|one| [one.time_s, of(one)]).collect()
     };
-    Plot {
-        title: "strain at the gauges".to_owned(),
-        x: Axis::of("time (s)"),
-        y: Axis::of("strain"),
-        lines: vec![
-            line("incident bar", points(&|one| one.incident_bar), false),
-            line(
-                "transmission bar",
-                points(&|one| one.transmission_bar),
-                false,
-            ),
+    Plot::of(
+        "strain at the gauges",
+        "time (s)",
+        "strain",
+        vec![
+            Line::new("incident bar", points(&|one| one.incident_bar)),
+            Line::new("transmission bar", points(&|one| one.transmission_bar)),
         ],
-        ..Plot::default()
-    }
+    )
 }
 
 /// The three pulses over time, and the sum of two of them, which is the third in equilibrium.
@@ -152,22 +139,20 @@ fn bar_plot(record: &Record, bars: &Bars) -> Plot {
     let points = |of: &dyn Fn(&BarSignal) -> f64| -> Vec<[f64; 2]> {
         signals.iter().map(|one| [one.time_s, of(one)]).collect()
     };
-    Plot {
-        title: "pulses at the ends of the bars".to_owned(),
-        x: Axis::of("time (s)"),
-        y: Axis::of("strain"),
-        lines: vec![
-            line("incident", points(&|one| one.incident), false),
-            line("reflected", points(&|one| one.reflected), false),
-            line("transmitted", points(&|one| one.transmitted), false),
-            line(
+    Plot::of(
+        "pulses at the ends of the bars",
+        "time (s)",
+        "strain",
+        vec![
+            Line::new("incident", points(&|one| one.incident)),
+            Line::new("reflected", points(&|one| one.reflected)),
+            Line::new("transmitted", points(&|one| one.transmitted)),
+            Line::dashed(
                 "incident + reflected",
                 points(&|one| one.incident + one.reflected),
-                true,
             ),
         ],
-        ..Plot::default()
-    }
+    )
 }
 
 /// Stress over strain of a specimen between two bars.
@@ -180,13 +165,12 @@ fn stress_plot(rows: &[Row], specimen: &Specimen) -> Plot {
         Specimen::Beam(_) => (1.0, "strain"),
     };
     let curve = stress_strain(rows, specimen, length_m);
-    Plot {
-        title: "stress over strain".to_owned(),
-        x: Axis::of(strain),
-        y: Axis::of("stress (Pa)"),
-        lines: vec![line("mean of both ends", curve, false)],
-        ..Plot::default()
-    }
+    Plot::of(
+        "stress over strain",
+        strain,
+        "stress (Pa)",
+        vec![Line::new("mean of both ends", curve)],
+    )
 }
 
 /// The force on both sides of the body over time.
@@ -194,16 +178,15 @@ fn force_over_time(rows: &[Row], result: &TestResult) -> Plot {
     let points = |of: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
         rows.iter().map(|row| [row.time_s, of(row)]).collect()
     };
-    Plot {
-        title: result.kind.name().replace('-', " "),
-        x: Axis::of("time (s)"),
-        y: Axis::of("force (N)"),
-        lines: vec![
-            line("on the loaded side", points(&|row| row.force_n), false),
-            line("on the other side", points(&|row| row.reaction_n), false),
+    Plot::of(
+        result.kind.name().replace('-', " "),
+        "time (s)",
+        "force (N)",
+        vec![
+            Line::new("on the loaded side", points(&|row| row.force_n)),
+            Line::new("on the other side", points(&|row| row.reaction_n)),
         ],
-        ..Plot::default()
-    }
+    )
 }
 
 /// The first line of `force-displacement.csv`.
@@ -246,11 +229,10 @@ pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
     let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
         rows.iter().map(|row| [way(row), row.load_n()]).collect()
     };
-    let mut lines = vec![Line {
-        name: "crosshead travel".to_owned(),
-        points: points(&|row| row.travel_m - play_m),
-        dashed: false,
-    }];
+    let mut lines = vec![Line::new(
+        "crosshead travel",
+        points(&|row| row.travel_m - play_m),
+    )];
     let of_body = slope(rows, |row| row.deflection_m);
     if let (Some(of_body), true) = (of_body, named(result, "specimen stiffness").is_some()) {
         let sign = of_body.stiffness_n_m.signum();
@@ -258,38 +240,33 @@ pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
         // After it has broken the body has no deflection.
         let until = peak(rows).map_or(f64::INFINITY, |row| row.time_s);
         let whole = rows.iter().filter(|row| row.time_s <= until);
-        lines.push(Line {
-            name: "deflection of the specimen".to_owned(),
-            points: whole.map(|row| [way(row), row.load_n()]).collect(),
-            dashed: false,
-        });
+        lines.push(Line::new(
+            "deflection of the specimen",
+            whole.map(|row| [way(row), row.load_n()]).collect(),
+        ));
     }
     let target = ["specimen stiffness", "stiffness"].iter().find_map(|name| {
         let figure = named(result, name)?;
         Some((figure.theory?, figure.theory_is?))
     });
     if let (Some((stiffness, source)), Some(peak)) = (target, peak(rows)) {
-        lines.push(Line {
-            name: format!("{}: stiffness", source.name()),
-            points: vec![[0.0, 0.0], [peak.load_n() / stiffness, peak.load_n()]],
-            dashed: true,
-        });
+        lines.push(Line::dashed(
+            format!("{}: stiffness", source.name()),
+            vec![[0.0, 0.0], [peak.load_n() / stiffness, peak.load_n()]],
+        ));
     }
     if !measured.is_empty() {
-        lines.push(Line {
-            name: "measured".to_owned(),
-            points: measured.to_vec(),
-            dashed: true,
-        });
+        lines.push(Line::dashed("measured", measured.to_vec()));
     }
     let failure = named(result, FAILURE_FORCE).and_then(|figure| figure.theory);
     Plot {
-        title: result.kind.name().replace('-', " "),
-        x: Axis::of("displacement (m)"),
-        y: Axis::of("load (N)"),
-        lines,
         reference: failure.map(|force| (force, "target: failure force".to_owned())),
-        ..Plot::default()
+        ..Plot::of(
+            result.kind.name().replace('-', " "),
+            "displacement (m)",
+            "load (N)",
+            lines,
+        )
     }
 }
 

@@ -21,6 +21,7 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_plan::measure::{History, Probe, place_watches, probes, renumber as renumber_probes};
 use dem_plan::{Plan, PlannedStage};
+use dem_results::folder::names;
 use dem_results::summary::Inputs;
 use dem_rig::watch::Watch;
 
@@ -89,7 +90,7 @@ impl<'a> Run<'a> {
         let resumed = settings.resume.take().zip(fingerprint);
         let is_continued = resumed.is_some();
         if let Some((snapshot, fingerprint)) = resumed {
-            let place = (settings.folder).map(|f| f.checkpoint().display().to_string());
+            let place = (settings.folder).map(|f| f.file(names::CHECKPOINT).display().to_string());
             (snapshot.check_scene(&scene.describe()))
                 .and_then(|()| snapshot.restore(fingerprint, &mut state, &mut bodies))
                 .map_err(|error| error.within(&place.unwrap_or_default()))?;

@@ -4,6 +4,7 @@ pub(crate) mod summary_parts;
 
 use dem_io::Result;
 use dem_io::units::significant;
+use dem_results::folder::names;
 use dem_results::summary::{AdaptiveSummary, Summary, Verdict};
 use dem_results::{ResultsFolder, write_json};
 
@@ -127,7 +128,7 @@ impl Run<'_> {
         advance(&mut self.state);
         let changed = self.follow_population();
         self.note_changes(changed.is_some(), true)?;
-        write_json(&folder.ended(), &end)?;
+        write_json(&folder.file(names::ENDED), &end)?;
         self.save()?;
         let pictures = taken_until(self.scene, &self.progress)?;
         end.write(folder, &self.probes, pictures)

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use dem_io::safe_write::{explain, write_file};
 use dem_io::{Diagnostic, Result, read_input};
 use dem_report::report;
+use dem_results::folder::names;
 use dem_results::{ResultsFolder, Summary, from_json};
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -102,13 +103,11 @@ impl End {
     /// Writes `report.html` from the other files of the run.
     pub(super) fn write_page(&self, folder: &ResultsFolder) -> Result<()> {
         let page = report(folder.path(), &self.summary)?;
-        write_file(&folder.report(), |out| out.write_all(page.as_bytes()))
+        folder.write(names::REPORT, &page)
     }
 
     pub(super) fn write_summary(&self, folder: &ResultsFolder) -> Result<()> {
-        write_file(&folder.summary(), |out| {
-            out.write_all(self.summary.as_bytes())
-        })
+        folder.write(names::SUMMARY, &self.summary)
     }
 
     /// Names of the missing files at the end of a run. A summary of another run does not count.
@@ -121,17 +120,17 @@ impl End {
     ) -> Vec<String> {
         let kept = self.tables.iter().map(|(name, _)| folder.path().join(name));
         let plots = plots_of_every_run(probes);
-        let mut wanted = vec![folder.report()];
+        let mut wanted = vec![folder.file(names::REPORT)];
         if has_pictures {
-            wanted.extend([folder.film(), folder.film_strip()]);
+            wanted.extend([folder.file(names::FILM), folder.file(names::FILM_STRIP)]);
         }
         wanted.extend(kept);
-        wanted.extend(has_test.then(|| folder.test_curve()));
+        wanted.extend(has_test.then(|| folder.file(names::TEST_CURVE)));
         wanted.extend(plots.iter().map(|name| folder.plot(name)));
         wanted.retain(|path| !path.is_file());
-        let summary = std::fs::read(folder.summary()).unwrap_or_default();
+        let summary = std::fs::read(folder.file(names::SUMMARY)).unwrap_or_default();
         if summary != self.summary.as_bytes() {
-            wanted.push(folder.summary());
+            wanted.push(folder.file(names::SUMMARY));
         }
         wanted.iter().map(|path| name_in(folder, path)).collect()
     }
@@ -160,7 +159,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         return Ok(None);
     };
     let progress = &snapshot.progress;
-    let ended = std::fs::read(folder.ended()).ok();
+    let ended = std::fs::read(folder.file(names::ENDED)).ok();
     let ended = ended.and_then(|bytes| serde_json::from_slice::<End>(&bytes).ok());
     let Some(end) = &ended else {
         return Ok(None);
@@ -175,7 +174,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         .check_scene(&scene.describe())
         .and_then(|()| fingerprint(&state))
         .and_then(|fingerprint| snapshot.restore(fingerprint, &mut state, &mut bodies))
-        .map_err(|error| error.within(&folder.checkpoint().display().to_string()))?;
+        .map_err(|error| error.within(&folder.file(names::CHECKPOINT).display().to_string()))?;
     if progress.is_over(&state, schedule, scene).is_none() {
         return Ok(None);
     }

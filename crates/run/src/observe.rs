@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
-use dem_results::ResultsFolder;
 use dem_results::checkpoint::write_checkpoint;
+use dem_results::folder::names;
 
 use super::begin::Run;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
@@ -317,7 +317,7 @@ impl Run<'_> {
             self.probes.iter().map(|probe| probe.history).collect(),
             self.progress.clone(),
         );
-        write_checkpoint(&folder.checkpoint(), &snapshot.to_bytes()?)
+        write_checkpoint(&folder.file(names::CHECKPOINT), &snapshot.to_bytes()?)
     }
 
     /// The end of a run that does not reach its end time.
@@ -328,7 +328,10 @@ impl Run<'_> {
 
     /// Adds to a message that the run can be resumed from its checkpoint, if there is one.
     fn with_checkpoint(&self, mut problem: Diagnostic) -> Diagnostic {
-        let checkpoint = self.settings.folder.map(ResultsFolder::checkpoint);
+        let checkpoint = self
+            .settings
+            .folder
+            .map(|folder| folder.file(names::CHECKPOINT));
         if let Some(path) = checkpoint.filter(|path| path.is_file()) {
             problem.remedy += &format!(
                 "; --resume takes it up from '{}' with that step",
@@ -342,7 +345,7 @@ impl Run<'_> {
         let remedy = match self.settings.folder {
             Some(folder) => format!(
                 "go on with the same command and --resume: '{}' holds its state",
-                folder.checkpoint().display()
+                folder.file(names::CHECKPOINT).display()
             ),
             None => "with --output FOLDER its state would have been kept".to_owned(),
         };

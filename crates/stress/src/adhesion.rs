@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Shown};
+use super::prediction::{Member, Shown};
 use super::trial::Trial;
 
 /// Kinetic energy over F d_0 of a sphere that sticks: less than the 0.6 that separate d_0 from the
@@ -77,12 +77,11 @@ output = {{ series = {end_s:e} }}
             -speed_m_s
         );
         let (radius_m, work) = (self.radius_m, self.work_j_m2);
-        Member {
-            what: format!("{radius_m:e} m, {work:e} J/m2, {what}"),
-            trial: Trial::of(text),
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(vec![shown]),
-        }
+        Member::ends(
+            format!("{radius_m:e} m, {work:e} J/m2, {what}"),
+            Trial::of(text),
+            vec![shown],
+        )
     }
 
     /// A slow sphere comes to rest at d_0.

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::Trial;
 
 const RADIUS_M: f64 = 1e-3;
@@ -46,12 +46,11 @@ output = {{ series = 1e-5 }}
 ",
         names[0], names[1]
     );
-    Member {
-        what: format!("{kind}, Z of {ratio:e} of the row, damping_ratio = {damping_ratio}"),
-        trial: Trial::of(text),
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(vec![Shown::at_most(Quantity::EnergyError, ENERGY)]),
-    }
+    Member::ends(
+        format!("{kind}, Z of {ratio:e} of the row, damping_ratio = {damping_ratio}"),
+        Trial::of(text),
+        vec![Shown::at_most(Quantity::EnergyError, ENERGY)],
+    )
 }
 
 /// All impedances, for walls and for grips; some with bonds of ten times the critical damping.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::Trial;
 
 const RADIUS_M: f64 = 1e-3;
@@ -48,14 +48,13 @@ output.series = {:e}
         1e-5 * end_s
     );
     let [pressed_m, pulled_m] = [pressed_1_s, pulled_1_s].map(|rate| SPEED_M_S / rate);
-    Member {
-        what: format!("contact {ratio:e} times as stiff as the bond"),
-        trial: Trial::of(text),
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(vec![
+    Member::ends(
+        format!("contact {ratio:e} times as stiff as the bond"),
+        Trial::of(text),
+        vec![
             Shown::measure("in", "m", -pressed_m, PERMITTED * pressed_m),
             Shown::measure("out", "m", pulled_m, PERMITTED * pulled_m),
             Shown::at_most(Quantity::EnergyError, 1e-3),
-        ]),
-    }
+        ],
+    )
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::Trial;
 
 /// Radius of spheres and bonds, m.
@@ -83,12 +83,7 @@ bodies.row = {{ particles = [{}], bond_list = [{}], material = \"rock\", bonds =
 pub(super) fn row(trial: Trial, more: impl IntoIterator<Item = Shown>) -> Member {
     let mut shown = vec![Shown::at_most(Quantity::EnergyError, ENERGY_ERROR)];
     shown.extend(more);
-    Member {
-        what: "row at half of the limit".to_owned(),
-        trial,
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(shown),
-    }
+    Member::ends("row at half of the limit", trial, shown)
 }
 
 /// Momenta that nothing changes.

@@ -142,16 +142,15 @@ measures.turned = {{ of = \"last\", quantity = \"rotation_z\" }}
     );
     // Straight on, at 3 mm times 1000 rad/s for 1 ms, with a rotation of 1 rad.
     let rounding = 1e-12;
-    members.push(Member {
-        what: "three loose spheres".to_owned(),
-        trial: Trial::of(scene),
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(vec![
+    members.push(Member::ends(
+        "three loose spheres",
+        Trial::of(scene),
+        vec![
             Shown::measure("along", "m", 0.0, rounding * 3e-3),
             Shown::measure("across", "m", 3e-3, rounding * 3e-3),
             Shown::measure("turned", "rad", 1.0, rounding),
             Shown::count(Quantity::Fragments, 3),
-        ]),
-    });
+        ],
+    ));
     Ok(members)
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Shown};
+use super::prediction::{Member, Shown};
 use super::trial::Trial;
 use dem_physics::contact::liquid_bridge::LiquidBridge;
 
@@ -71,15 +71,14 @@ walls.floor = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material =
             radius_m + gap_m,
             -speed_m_s
         );
-        Member {
-            what: format!(
+        Member::ends(
+            format!(
                 "{radius_m:e} m, V/R^3 {:e}, {share} of the critical speed",
                 self.volume
             ),
-            trial: Trial::of(text),
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(vec![shown]),
-        }
+            Trial::of(text),
+            vec![shown],
+        )
     }
 
     /// Faster than the critical speed, it leaves with the rest of its energy.

@@ -1,6 +1,6 @@
 //! Particles that daughters replace while two plates squeeze them.
 
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::Trial;
 
 /// Radius of the sphere, m.
@@ -41,12 +41,7 @@ pub(crate) fn daughters() -> Vec<Member> {
         if class == "weak" {
             shown.push(Shown::count(Quantity::BrokenBonds, 6));
         }
-        Member {
-            what: what.to_owned(),
-            trial: Trial::of(scene(class, more, is_fed)),
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(shown),
-        }
+        Member::ends(what, Trial::of(scene(class, more, is_fed)), shown)
     };
     members.map(member).into()
 }

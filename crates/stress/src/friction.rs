@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::Trial;
 
 const RADIUS_M: f64 = 1e-3;
@@ -79,10 +79,9 @@ measures.force = {{ of = \"right\", with = \"left\", quantity = \"contact_force\
         2.0 * RADIUS_M,
         -load_n
     );
-    Member {
-        what: format!("pressure {ratio:e} of the cohesion, {what}"),
-        trial: Trial::of(text),
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(shown),
-    }
+    Member::ends(
+        format!("pressure {ratio:e} of the cohesion, {what}"),
+        Trial::of(text),
+        shown,
+    )
 }

@@ -215,12 +215,7 @@ measures.rebound_of_other = {{ of = \"other\", quantity = \"velocity_z\" }}
             let way = closing * (TIME * together_s + speed * apart_s);
             shown.push(Shown::measure("last_place", "m", place, way));
         }
-        Member {
-            what,
-            trial: self.trial("\"auto\""),
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(shown),
-        }
+        Member::ends(what, self.trial("\"auto\""), shown)
     }
 
     /// It is stopped, or with `is_refused` not even started, with these words. `time_step`: of

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::bonded::{self, RADIUS_M, STRAIN, mass_kg, momenta_stay};
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 
 /// Kinetic energy at the start over the energy at the strength.
 const EXCESS: f64 = 4.0;
@@ -36,11 +36,10 @@ fn flying_apart(young_modulus_pa: f64, rings: u32, sectors: u32) -> Member {
     );
     let measures = "measures.kinetic_energy = { quantity = \"kinetic_energy\" }";
     let times_s = [4.0 * STEPS * step_s, step_s];
-    Member {
-        what: format!("{young_modulus_pa:e} Pa, {rings} x {sectors} elements"),
-        trial: bonded::flying_apart(times_s, &bonds, speed_m_s, measures),
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(vec![
+    Member::ends(
+        format!("{young_modulus_pa:e} Pa, {rings} x {sectors} elements"),
+        bonded::flying_apart(times_s, &bonds, speed_m_s, measures),
+        vec![
             // Up to a step of the force at the strength.
             Shown::measure(
                 "kinetic_energy",
@@ -49,8 +48,8 @@ fn flying_apart(young_modulus_pa: f64, rings: u32, sectors: u32) -> Member {
                 2.0 * energy_j / STEPS,
             ),
             Shown::count(Quantity::BrokenBonds, 1),
-        ]),
-    }
+        ],
+    )
 }
 
 /// A row that bends and twists under its own vibration, at half of the limit.

@@ -256,12 +256,11 @@ measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"larges
         let end_s = STEPS as f64 * limit_s;
         // For a mode, leapfrog conserves its energy minus (w dt / 2)^2 of the elastic part.
         let most_j = start_j / (1.0 - fraction * fraction);
-        members.push(Member {
-            what: format!("0.98, damping {eta}"),
-            trial: trial(&format!("{:e}", fraction * limit_s), end_s, false)?,
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(vec![Shown::measure("elastic_energy", "J", 0.0, most_j)]),
-        });
+        members.push(Member::ends(
+            format!("0.98, damping {eta}"),
+            trial(&format!("{:e}", fraction * limit_s), end_s, false)?,
+            vec![Shown::measure("elastic_energy", "J", 0.0, most_j)],
+        ));
         let above = format!("{:e}", 1.02 * limit_s);
         members.push(Member {
             what: format!("1.02, damping {eta}"),

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use dem_io::Result;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::{Outcome, Trial};
 use dem_physics::bond::damping::{DampingModel, ReducedInertia};
 use dem_physics::bond::damping_models::Chen;
@@ -123,17 +123,16 @@ pub(crate) fn spin() -> Result<Vec<Member>> {
                 (10.0 * strain + 1e-3) * 4.0 * at_rest_j,
             )
         };
-        Member {
-            what: if eta > 0.0 { "damped" } else { "undamped" }.to_owned(),
-            trial: Trial::of(scene),
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(vec![
+        Member::ends(
+            if eta > 0.0 { "damped" } else { "undamped" },
+            Trial::of(scene),
+            vec![
                 stored,
                 // Each step has rounding errors.
                 Shown::at_most(Quantity::AngularMomentumError, STEPS * f64::EPSILON),
                 Shown::at_most(Quantity::EnergyError, turn.powi(2)),
-            ]),
-        }
+            ],
+        )
     };
     Ok(vec![member(0.0), member(0.1)])
 }
@@ -166,15 +165,14 @@ measures.way = {{ quantity = \"position_x\" }}
     let rounding_m = 100.0 * f64::EPSILON * radius_m;
     // Every step rounds every coordinate once.
     let grown_m = DAY / REST_STEP_S * f64::EPSILON * 4.0 * radius_m;
-    let mut members = vec![Member {
-        what: "a sphere".to_owned(),
-        trial: Trial::of(scene(DAY, &format!("[0, 0, {}]", -g), &ball)),
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(vec![
+    let mut members = vec![Member::ends(
+        "a sphere",
+        Trial::of(scene(DAY, &format!("[0, 0, {}]", -g), &ball)),
+        vec![
             Shown::measure("height", "m", radius_m - overlap_m, rounding_m),
             Shown::measure("way", "m", 0.0, 0.0),
-        ]),
-    }];
+        ],
+    )];
     let (sine, cosine) = 15.0_f64.to_radians().sin_cos();
     let slope = format!("[{}, 0, {}]", g * sine, -g * cosine);
     let side = 2.0 * radius_m;
@@ -211,12 +209,11 @@ start_as = \"{start_as}\"
             let value = Quantity::Measure(name).of(&hour);
             Shown::measure(name, "m", value, grown_m)
         };
-        members.push(Member {
-            what: format!("a tetrahedron on a slope of 15 degrees, {start_as}"),
-            trial: Trial::of(scene(DAY, &slope, &body)),
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(vec![of("height"), of("way")]),
-        });
+        members.push(Member::ends(
+            format!("a tetrahedron on a slope of 15 degrees, {start_as}"),
+            Trial::of(scene(DAY, &slope, &body)),
+            vec![of("height"), of("way")],
+        ));
     }
     Ok(members)
 }

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use dem_io::{Body, Result};
 
-use super::prediction::{Member, ObservationMethod, Prediction, Shown};
+use super::prediction::{Member, Shown};
 use super::trial::Trial;
 use dem_physics::bond::pair::frequencies;
 use dem_physics::bond::stiffness::{BondModel, BondShape, stiffness};
@@ -140,12 +140,7 @@ impl Row {
         let shown = moved_m.iter().zip(names);
         let shown = shown.map(|(moved, name)| Shown::measure(name, "m", *moved, rounding_m));
         let shown: Vec<Shown> = shown.collect();
-        Ok(Member {
-            what,
-            trial: self.trial(name, step_s, steps)?,
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(shown),
-        })
+        Ok(Member::ends(what, self.trial(name, step_s, steps)?, shown))
     }
 
     /// Displacement of each sphere once the bonds are longer by this, m: the centre of mass does

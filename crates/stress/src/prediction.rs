@@ -18,6 +18,18 @@ pub struct Member {
     pub prediction: Prediction,
 }
 
+impl Member {
+    /// A run that ends and shows these values.
+    pub(crate) fn ends(what: impl Into<String>, trial: Trial, shown: Vec<Shown>) -> Self {
+        Self {
+            what: what.into(),
+            trial,
+            way: ObservationMethod::Run,
+            prediction: Prediction::Ends(shown),
+        }
+    }
+}
+
 /// How a scene is observed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ObservationMethod {

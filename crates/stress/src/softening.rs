@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::bonded::{self, RADIUS_M, STRAIN, mass_kg};
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::Trial;
 
 /// Kinetic energy at the start over the fracture energy.
@@ -74,19 +74,18 @@ fn flying_apart(young_modulus_pa: f64, ratio: f64, criterion: &Criterion) -> Mem
     let measures = "measures.kinetic_energy = { quantity = \"kinetic_energy\" }";
     let times_s = [4.0 * STEPS * step_s, step_s];
     let left_j = (EXCESS - 1.0) * energy_j;
-    Member {
-        what: format!(
+    Member::ends(
+        format!(
             "{young_modulus_pa:e} Pa, {}, opening ratio {ratio:e}",
             criterion.name
         ),
-        trial: bonded::flying_apart(times_s, &bonds, speed_m_s, measures),
-        way: ObservationMethod::Run,
+        bonded::flying_apart(times_s, &bonds, speed_m_s, measures),
         // One step at the strength: up to it the force is taken for half a step.
-        prediction: Prediction::Ends(vec![
+        vec![
             Shown::measure("kinetic_energy", "J", left_j, energy_j / STEPS),
             Shown::count(Quantity::BrokenBonds, 1),
-        ]),
-    }
+        ],
+    )
 }
 
 /// A row with a twentieth of critical damping, at half of the limit: its energy is as good as the
@@ -114,13 +113,12 @@ fn undamped((fraction, [least, largest]): (f64, [f64; 2])) -> Member {
         "safety_factor = 0.5",
         &format!("safety_factor = {fraction}"),
     );
-    Member {
-        what: format!("undamped row at {fraction} of the limit"),
-        trial: Trial { scene, ..trial },
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(vec![
+    Member::ends(
+        format!("undamped row at {fraction} of the limit"),
+        Trial { scene, ..trial },
+        vec![
             Shown::between(Quantity::EnergyError, "", least, largest),
             Shown::count(Quantity::BrokenBonds, 0),
-        ]),
-    }
+        ],
+    )
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use dem_io::{Diagnostic, Result};
 use rayon::prelude::*;
 
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::{Outcome, Trial};
 use dem_results::Summary;
 
@@ -242,12 +242,7 @@ impl Block {
             shown.push(Shown::count(Quantity::Restored, 0));
         }
         shown.extend(more);
-        Member {
-            what,
-            trial: Trial::of(self.scene(false)),
-            way: ObservationMethod::Run,
-            prediction: Prediction::Ends(shown),
-        }
+        Member::ends(what, Trial::of(self.scene(false)), shown)
     }
 
     /// Centre of a sphere at this place in the block, m: the lowest are at z = 0.

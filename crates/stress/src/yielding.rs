@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::bonded::{self, RADIUS_M, STRAIN, mass_kg, momenta_stay};
-use super::prediction::{Member, ObservationMethod, Prediction, Shown};
+use super::prediction::{Member, Shown};
 
 /// Steps of a flight.
 const STEPS: f64 = 4000.0;
@@ -44,15 +44,14 @@ measures.elastic_energy = { quantity = \"elastic_energy\", statistic = \"largest
     let largest_m = 0.5 * yield_m * (1.0 + beyond);
     let load = 1.0 + hardening * beyond;
     let elastic_j = 0.5 * yield_n * yield_m * load * load;
-    Member {
-        what: format!("{young_modulus_pa:e} Pa, energy {excess:e}, hardening {hardening}"),
-        trial: bonded::flying_apart([end_s, step_s], &bonds, speed_m_s, measures),
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(vec![
+    Member::ends(
+        format!("{young_modulus_pa:e} Pa, energy {excess:e}, hardening {hardening}"),
+        bonded::flying_apart([end_s, step_s], &bonds, speed_m_s, measures),
+        vec![
             Shown::measure("displacement", "m", largest_m, PERMITTED * largest_m),
             Shown::measure("elastic_energy", "J", elastic_j, PERMITTED * elastic_j),
-        ]),
-    }
+        ],
+    )
 }
 
 /// A row whose bonds yield in all modes, with hardening, at half of the limit.

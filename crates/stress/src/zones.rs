@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use dem_io::{Body, Result};
 
 use super::bonded::{RADIUS_M, mass_kg, momenta_stay};
-use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::prediction::{Member, Quantity, Shown};
 use super::trial::Trial;
 
 /// Distance of neighbours, m: their spheres touch.
@@ -68,15 +68,14 @@ bodies.bar = {{ file = \"bar.vtp\", material = \"rock\", bonds = \"rock\", bonde
 fn member(what: String, scene: String, body: Body, shown: Vec<Shown>) -> Member {
     let mut prediction = shown;
     prediction.extend(momenta_stay());
-    Member {
+    Member::ends(
         what,
-        trial: Trial {
+        Trial {
             bodies: vec![("bar.vtp", body)],
             ..Trial::of(scene)
         },
-        way: ObservationMethod::Run,
-        prediction: Prediction::Ends(prediction),
-    }
+        prediction,
+    )
 }
 
 /// A sphere that a stretched bond joins to four others, which are rigid: it oscillates as leapfrog

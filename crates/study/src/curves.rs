@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use dem_plots::{Axis, Line, MOST_LINES, Plot};
+use dem_plots::{Line, MOST_LINES, Plot};
 
 use super::sweep_table::SweepTable;
 
@@ -56,11 +56,12 @@ pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
             dashed: !row.results[measure].is_reference,
         })
         .collect();
-    (!lines.is_empty()).then(|| Plot {
-        title: table.measures[measure].name.replace('_', " "),
-        x: Axis::of("displacement (m)"),
-        y: Axis::of("load (N)"),
-        lines,
-        ..Plot::default()
+    (!lines.is_empty()).then(|| {
+        Plot::of(
+            table.measures[measure].name.replace('_', " "),
+            "displacement (m)",
+            "load (N)",
+            lines,
+        )
     })
 }

@@ -162,14 +162,13 @@ fn found_lines(table: &SweepTable, response: &Response, over: usize) -> Vec<Line
         let SearchResult::Found { between, .. } = &case.result else {
             return None;
         };
-        Some(Line {
-            name: match case.settings.as_str() {
+        Some(Line::new(
+            match case.settings.as_str() {
                 "" => "found".to_owned(),
                 settings => format!("found for {settings}"),
             },
-            points: between.map(|x| [x, search.value]).into(),
-            dashed: false,
-        })
+            between.map(|x| [x, search.value]).into(),
+        ))
     };
     search
         .cases

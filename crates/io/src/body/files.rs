@@ -2,7 +2,6 @@
 //! format.
 
 use std::ffi::OsStr;
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -13,9 +12,8 @@ use super::stored_particles::StoredParticles;
 use super::stored_walls::{FIXED_WALLS_FILE, StoredWalls};
 use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::input_file::{BUFFER_BYTES, explain_read, open_input};
 use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
-
-const BUFFER_BYTES: usize = 1 << 16;
 
 /// The form in which a body is stored, with the names of its files.
 enum Storage {
@@ -61,8 +59,8 @@ impl Pair {
         &self,
         read: impl FnOnce(&mut dyn BufRead, &mut dyn BufRead) -> Result<Body>,
     ) -> Result<Body> {
-        let particles = open(&self.particles)?;
-        let mut bonds = open(&self.bonds)?;
+        let particles = open_input(&self.particles)?;
+        let mut bonds = open_input(&self.bonds)?;
         self.read_with(particles, &mut bonds, read)
     }
 
@@ -76,7 +74,7 @@ impl Pair {
         if self.bonds.exists() {
             self.read(read)
         } else {
-            self.read_with(open(&self.particles)?, &mut no_bonds, read)
+            self.read_with(open_input(&self.particles)?, &mut no_bonds, read)
         }
     }
 
@@ -129,7 +127,10 @@ impl Storage {
             "data" | "lmp" | "lammps" => Ok(Self::Lammps(path.to_owned())),
             "csv" => Ok(Self::Csv(Pair::named(path))),
             "txt" => Ok(Self::Txt(Pair::named(path))),
-            _ if path.is_dir() => Err(is_folder(path)),
+            _ if path.is_dir() => {
+                let error = ErrorKind::IsADirectory.into();
+                Err(explain_read(path, &error, "a file"))
+            }
             _ => {
                 let problem = if ending.is_empty() {
                     "the name has no ending that says which format is meant".to_owned()
@@ -177,8 +178,8 @@ pub fn read_body(path: &Path) -> Result<Body> {
             let mut input = BufReader::with_capacity(BUFFER_BYTES, input.lock());
             vtp::read(&mut input).map_err(|error| error.within("standard input"))
         }
-        Storage::Vtp(path) => vtp::read(&mut open(&path)?).map_err(within),
-        Storage::Lammps(path) => lammps::read(&mut open(&path)?).map_err(within),
+        Storage::Vtp(path) => vtp::read(&mut open_input(&path)?).map_err(within),
+        Storage::Lammps(path) => lammps::read(&mut open_input(&path)?).map_err(within),
         Storage::Csv(pair) => pair.read(csv::read),
         Storage::Txt(pair) => pair.read(txt::read),
     }
@@ -208,13 +209,13 @@ pub fn read_spheres(path: &Path) -> Result<Body> {
 
 /// Reads a frame of a run; refuses one without fragments.
 pub fn read_frame(path: &Path) -> Result<StoredFrame> {
-    let mut file = open(path)?;
+    let mut file = open_input(path)?;
     vtp::read_frame(&mut file).map_err(|error| error.within(&path.display().to_string()))
 }
 
 /// Reads the particles and bonds of a frame of any run.
 pub fn read_particles(path: &Path) -> Result<StoredParticles> {
-    let mut file = open(path)?;
+    let mut file = open_input(path)?;
     vtp::read_particles(&mut file).map_err(|error| error.within(&path.display().to_string()))
 }
 
@@ -222,7 +223,7 @@ pub fn read_particles(path: &Path) -> Result<StoredParticles> {
 /// never move and are written once, next to it.
 pub fn read_walls(path: &Path) -> Result<StoredWalls> {
     let read = |path: &Path| {
-        let mut file = open(path)?;
+        let mut file = open_input(path)?;
         vtp::read_walls(&mut file).map_err(|error| error.within(&path.display().to_string()))
     };
     let mut walls = read(path)?;
@@ -283,34 +284,6 @@ pub fn write_body(body: &Body, path: &Path) -> Result<()> {
             |out| txt::write_bonds(body, out),
         ),
     }
-}
-
-fn open(path: &Path) -> Result<BufReader<File>> {
-    if path.is_dir() {
-        return Err(is_folder(path));
-    }
-    let place = path.display().to_string();
-    match File::open(path) {
-        Ok(file) => Ok(BufReader::with_capacity(BUFFER_BYTES, file)),
-        Err(error) if error.kind() == ErrorKind::NotFound => Err(Diagnostic::input(
-            place,
-            "there is no such file",
-            "check its name and folder",
-        )),
-        Err(error) => Err(Diagnostic::input(
-            place,
-            format!("cannot be opened: {error}"),
-            "",
-        )),
-    }
-}
-
-fn is_folder(path: &Path) -> Diagnostic {
-    Diagnostic::input(
-        path.display().to_string(),
-        "this is a folder",
-        "name a file in it",
-    )
 }
 
 /// Refuses an STL file where a body is read.

@@ -5,7 +5,7 @@ use crate::sizes::Sizes;
 use dem_io::stl::{read_stl_file, read_stream};
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_io::units::{length_unit_m, show_length};
-use dem_io::{Diagnostic, Result, Surface};
+use dem_io::{Diagnostic, Result, Surface, explain_read};
 use std::path::Path;
 
 /// The surface of the shape in a file, or in standard input (`-`).
@@ -23,19 +23,7 @@ pub(super) fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
     } else {
         read_stl_file(path).map(|bytes| (path.display().to_string(), bytes))
     }
-    .map_err(|e| {
-        let (problem, remedy) = if path.is_dir() {
-            ("this is a folder".to_owned(), "name a file in it")
-        } else if e.kind() == std::io::ErrorKind::NotFound {
-            (
-                "there is no such file".to_owned(),
-                "check its name and folder",
-            )
-        } else {
-            (format!("cannot be read: {e}"), "")
-        };
-        Diagnostic::input(path.display().to_string(), problem, remedy)
-    })?;
+    .map_err(|error| explain_read(path, &error, "a file"))?;
     surface_from_stl(
         &bytes,
         &name,

@@ -1,5 +1,6 @@
 //! The plots of the page.
 
+use dem_plots::{Line, Plot};
 use std::path::Path;
 
 use super::bending::{self, READINGS};
@@ -7,7 +8,6 @@ use super::drops;
 use super::map::{self, View};
 use super::oscillation;
 use crate::bench::{finished, number, read};
-use crate::plots::{dashed, line, plot};
 
 /// Every plot whose results are there, with the name of its file.
 pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
@@ -26,7 +26,7 @@ pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
 /// Nothing unless all have been run.
 fn curves(results: &Path) -> Option<String> {
     let equations = vec![[0.0, 0.0], [2.82e-3, 51.45]];
-    let mut lines = vec![dashed("Platzer 2022", equations)];
+    let mut lines = vec![Line::dashed("Platzer 2022", equations)];
     for row in bending::rows() {
         let shown = row.sample.bond_range == "1.0" && READINGS[..2].contains(&row.reading);
         if !shown {
@@ -40,24 +40,24 @@ fn curves(results: &Path) -> Option<String> {
             .into_iter()
             .filter(|[displacement_m, _]| *displacement_m >= 0.0);
         let name = format!("{}, {}", row.sample.title(), row.reading);
-        lines.push(line(&name, curve.step_by(4).collect()));
+        lines.push(Line::new(name, curve.step_by(4).collect()));
     }
     let [title, x] = [
         "Four-point bending, printed bonds",
         "travel of the pins (m)",
     ];
-    Some(plot(title, x, "load (N)", lines).svg().file())
+    Some(Plot::of(title, x, "load (N)", lines).svg().file())
 }
 
 fn oscillations() -> Option<String> {
     let mut lines = Vec::new();
     for damping in oscillation::DAMPING {
         let points = oscillation::curve(damping).ok()?.into_iter().step_by(4);
-        lines.push(line(&format!("d = {damping}"), points.collect()));
+        lines.push(Line::new(format!("d = {damping}"), points.collect()));
     }
     let title = "Two bonded particles, pulled and released";
     Some(
-        plot(title, "time (s)", "elongation (m)", lines)
+        Plot::of(title, "time (s)", "elongation (m)", lines)
             .svg()
             .file(),
     )

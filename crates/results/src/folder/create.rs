@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::disk::{make_folder, refuse_unless_empty};
 use super::lock::{LOCK, lock};
-use super::names::{FRAMES, PICTURES, PLOTS};
+use super::names::{FRAMES, PICTURES, PLOTS, SUMMARY};
 use super::paths::ResultsFolder;
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::PendingFile;
@@ -59,7 +59,7 @@ impl ResultsFolder {
             }
         }
         // This file is not kept: it only shows that files can be written here.
-        PendingFile::write(&folder.summary(), |_| Ok(()))?;
+        PendingFile::write(&folder.file(SUMMARY), |_| Ok(()))?;
         Ok(folder)
     }
 

@@ -7,26 +7,46 @@ use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 pub(super) const FRAMES: &str = "frames";
 pub(super) const PLOTS: &str = "plots";
 pub(super) const PICTURES: &str = "pictures";
-pub(super) const FILM_STRIP: &str = "film-strip.png";
-pub(super) const FILM: &str = "film.png";
-pub(super) const INDEX: &str = "frames.pvd";
-pub(super) const SERIES: &str = "series.csv";
-pub(super) const EVENTS: &str = "events.csv";
-pub(super) const FRAGMENTS: &str = "fragments.csv";
-pub(super) const FRAGMENT_TREE: &str = "fragment-tree.csv";
-pub(super) const DISCHARGE: &str = "discharge.csv";
-pub(super) const DISTRIBUTION: &str = "distribution.csv";
-pub(super) const FLOW: &str = "flow.csv";
-pub(super) const MIXING: &str = "mixing.csv";
-pub(super) const SUMMARY: &str = "summary.json";
-pub(super) const REPORT: &str = "report.html";
-pub(super) const SCENE: &str = "scene.toml";
-pub(super) const TEST_CURVE: &str = "force-displacement.csv";
-pub(super) const BAR_SIGNALS: &str = "bar-signals.csv";
-pub(super) const GAUGE_SIGNALS: &str = "gauge-signals.csv";
-pub(super) const DISC_STRESS: &str = "disc-stress.csv";
-pub(super) const CHECKPOINT: &str = "checkpoint.dem";
-pub(super) const ENDED: &str = ".ended.json";
+/// Some pictures side by side.
+pub const FILM_STRIP: &str = "film-strip.png";
+/// The pictures one after the other.
+pub const FILM: &str = "film.png";
+/// The list of all frames with their times, which ParaView opens.
+pub const INDEX: &str = "frames.pvd";
+/// Time series.
+pub const SERIES: &str = "series.csv";
+/// Events.
+pub const EVENTS: &str = "events.csv";
+/// Fragments at chosen moments.
+pub const FRAGMENTS: &str = "fragments.csv";
+/// The origin of each fragment.
+pub const FRAGMENT_TREE: &str = "fragment-tree.csv";
+/// What leaves through outlets.
+pub const DISCHARGE: &str = "discharge.csv";
+/// The size distribution of all fragments.
+pub const DISTRIBUTION: &str = "distribution.csv";
+/// Mass flows over time.
+pub const FLOW: &str = "flow.csv";
+/// The cells of mixtures.
+pub const MIXING: &str = "mixing.csv";
+/// Summary.
+pub const SUMMARY: &str = "summary.json";
+/// The page of the run.
+pub const REPORT: &str = "report.html";
+/// The scene as it was run.
+pub const SCENE: &str = "scene.toml";
+/// The curve of a laboratory test.
+pub const TEST_CURVE: &str = "force-displacement.csv";
+/// The pulses in the bars of a split-Hopkinson test.
+pub const BAR_SIGNALS: &str = "bar-signals.csv";
+/// What the strain gauges of a split-Hopkinson test record.
+pub const GAUGE_SIGNALS: &str = "gauge-signals.csv";
+/// The stress over the loaded diameter of a disc.
+pub const DISC_STRESS: &str = "disc-stress.csv";
+/// The latest state of the run.
+pub const CHECKPOINT: &str = "checkpoint.dem";
+/// The data written at the end of a run, kept until all files are complete.
+pub const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
 pub(super) const SINGLE_FILES: [&str; 19] = [
     INDEX,

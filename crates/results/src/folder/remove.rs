@@ -75,7 +75,7 @@ impl ResultsFolder {
         // Nor for a whole one.
         self.remove_files("", |name| name == SUMMARY)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
-        let is_ours = is_scene_as_run(&self.scene());
+        let is_ours = is_scene_as_run(&self.file(SCENE));
         self.remove_files("", |name| name == SCENE && is_ours)?;
         self.remove_numbered_and_plots()
     }

@@ -1,11 +1,11 @@
-//! Single files that a run writes as text: the scene as it was run, the curve of a test, plots.
+//! Single files that a run writes as text: the scene as it was run, tables of a test, plots.
 
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use super::disk::make_folder;
-use super::names::PLOTS;
+use super::names::{PLOTS, SCENE};
 use super::paths::ResultsFolder;
 use crate::plot_file::write_plot_file;
 use dem_io::diagnostic::{Diagnostic, Result};
@@ -19,7 +19,7 @@ impl ResultsFolder {
     /// an earlier run, and refuses to replace any other.
     pub fn write_scene(&self, program: &str, text: &str) -> Result<()> {
         self.refuse_foreign_scene()?;
-        write_file(&self.scene(), |out| {
+        write_file(&self.file(SCENE), |out| {
             writeln!(
                 out,
                 "{SCENE_BEGIN} ({program}): the scene of this run, with all files and settings that it was given."
@@ -30,7 +30,7 @@ impl ResultsFolder {
 
     /// Refuses a folder with a `scene.toml` that no run has written: it would be lost.
     pub(super) fn refuse_foreign_scene(&self) -> Result<()> {
-        let path = self.scene();
+        let path = self.file(SCENE);
         if !path.exists() || is_scene_as_run(&path) {
             return Ok(());
         }
@@ -41,27 +41,9 @@ impl ResultsFolder {
         ))
     }
 
-    /// Writes the curve of a laboratory test to `force-displacement.csv`, replacing an earlier one.
-    pub fn write_test_curve(&self, csv: &str) -> Result<()> {
-        write_file(&self.test_curve(), |out| out.write_all(csv.as_bytes()))
-    }
-
-    /// Writes the pulses in the bars of a split-Hopkinson test to `bar-signals.csv`, replacing an
-    /// earlier one.
-    pub fn write_bar_signals(&self, csv: &str) -> Result<()> {
-        write_file(&self.bar_signals(), |out| out.write_all(csv.as_bytes()))
-    }
-
-    /// Writes what the strain gauges of a split-Hopkinson test record to `gauge-signals.csv`,
-    /// replacing an earlier one.
-    pub fn write_gauge_signals(&self, csv: &str) -> Result<()> {
-        write_file(&self.gauge_signals(), |out| out.write_all(csv.as_bytes()))
-    }
-
-    /// Writes the stress over the loaded diameter of a disc to `disc-stress.csv`, replacing an
-    /// earlier one.
-    pub fn write_disc_stress(&self, csv: &str) -> Result<()> {
-        write_file(&self.disc_stress(), |out| out.write_all(csv.as_bytes()))
+    /// Writes the text of a file of which a run writes one, replacing an earlier one.
+    pub fn write(&self, name: &str, text: &str) -> Result<()> {
+        write_file(&self.file(name), |out| out.write_all(text.as_bytes()))
     }
 
     /// Writes a plot to `plots/NAME.svg`, replacing an earlier one. `svg`: the text of an SVG file.

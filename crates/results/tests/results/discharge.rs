@@ -2,12 +2,8 @@
 
 use std::fs;
 
-use dem_results::discharge::{COLUMNS, DISTRIBUTION_COLUMNS};
-use dem_results::flows::{FLOW_COLUMNS, MIXING_COLUMNS};
-use dem_results::{
-    DischargeRow, DistributionRow, FlowRow, MixingRow, Table, discharge_lines, write_distribution,
-    write_flows, write_mixing,
-};
+use dem_results::columns::{header, lines, write_table};
+use dem_results::{DischargeRow, DistributionRow, FlowRow, MixingRow, Table};
 use tempfile::tempdir;
 
 fn row(fragment_id: u32, time_s: f64) -> DischargeRow<'static> {
@@ -28,21 +24,19 @@ fn row(fragment_id: u32, time_s: f64) -> DischargeRow<'static> {
 fn discharge_looks_as_documented_and_goes_on_after_an_interruption() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("discharge.csv");
-    let mut file = Table::create(&path, COLUMNS).unwrap();
-    file.append(&discharge_lines([row(7, 0.5)].into_iter()))
+    let mut file = Table::create(&path, &header(&DischargeRow::COLUMNS)).unwrap();
+    file.append(&lines(&DischargeRow::COLUMNS, [row(7, 0.5)]))
         .unwrap();
     let checkpoint = file.length_bytes();
-    file.append(&discharge_lines([row(8, 1.0), row(2, 1.0)].into_iter()))
+    file.append(&lines(&DischargeRow::COLUMNS, [row(8, 1.0), row(2, 1.0)]))
         .unwrap();
-    file.append(&discharge_lines(std::iter::empty())).unwrap();
+    file.append(&lines(&DischargeRow::COLUMNS, [])).unwrap();
     let whole = fs::read_to_string(&path).unwrap();
-    assert!(whole.starts_with(&format!(
-        "{COLUMNS}\n0.5,7,\"cake, old\",stone,floor,0.05,0.3333333333333333,0.5,0.25,0.125,0.25\n"
-    )));
+    assert!(whole.starts_with("time_s,fragment_id,body,material,outlet,mass_kg,equivalent_diameter_m,length_m,width_m,thickness_m,sieve_m\n0.5,7,\"cake, old\",stone,floor,0.05,0.3333333333333333,0.5,0.25,0.125,0.25\n"));
     assert_eq!(whole.lines().count(), 4);
-    let mut file = Table::continue_at(&path, COLUMNS, checkpoint).unwrap();
+    let mut file = Table::continue_at(&path, &header(&DischargeRow::COLUMNS), checkpoint).unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 2);
-    file.append(&discharge_lines([row(8, 1.0), row(2, 1.0)].into_iter()))
+    file.append(&lines(&DischargeRow::COLUMNS, [row(8, 1.0), row(2, 1.0)]))
         .unwrap();
     file.sync().unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), whole);
@@ -60,10 +54,10 @@ fn a_distribution_looks_as_documented() {
         passing_fraction: 0.25,
         resolved: false,
     };
-    write_distribution(&path, &[row]).unwrap();
+    write_table(&path, &DistributionRow::COLUMNS, [row]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        format!("{DISTRIBUTION_COLUMNS}\ncake,both,0.0014,0.5,0.25,0\n")
+        "body,location,sieve_m,passing_kg,passing_fraction,resolved\ncake,both,0.0014,0.5,0.25,0\n"
     );
 }
 
@@ -83,12 +77,10 @@ fn flows_and_mixtures_look_as_documented() {
         outlet: "floor",
         ..fed
     };
-    write_flows(&path, &[fed, left]).unwrap();
+    write_table(&path, &FlowRow::COLUMNS, [fed, left]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        format!(
-            "{FLOW_COLUMNS}\n0.5,\"cake, old\",,3,0.75,1.5\n0.5,\"cake, old\",floor,3,0.75,1.5\n"
-        )
+        "time_s,body,outlet,pieces,mass_kg,flow_kg_s\n0.5,\"cake, old\",,3,0.75,1.5\n0.5,\"cake, old\",floor,3,0.75,1.5\n"
     );
     let cell = MixingRow {
         measure: "mixing",
@@ -96,9 +88,9 @@ fn flows_and_mixtures_look_as_documented() {
         mass_kg: 2.0,
         fraction: 0.25,
     };
-    write_mixing(&path, &[cell]).unwrap();
+    write_table(&path, &MixingRow::COLUMNS, [cell]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        format!("{MIXING_COLUMNS}\nmixing,0.5,-0.5,1.5,2,0.25\n")
+        "measure,x_m,y_m,z_m,mass_kg,fraction\nmixing,0.5,-0.5,1.5,2,0.25\n"
     );
 }

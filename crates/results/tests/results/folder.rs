@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use dem_results::folder::names;
 use dem_results::{Existing, ResultsFolder, write_json};
 use tempfile::tempdir;
 
@@ -14,17 +15,17 @@ fn names_in_the_folder() {
     let at = |name: &str| parent.path().join("out").join(name);
     assert_eq!(folder.frame(123), at("frames/frame_000123.vtp"));
     assert_eq!(folder.frame(1_234_567), at("frames/frame_1234567.vtp"));
-    assert_eq!(folder.frames_index(), at("frames.pvd"));
+    assert_eq!(folder.file(names::INDEX), at("frames.pvd"));
     assert_eq!(folder.picture(123), at("pictures/picture-00123.png"));
     assert_eq!(folder.picture(123_456), at("pictures/picture-123456.png"));
-    assert_eq!(folder.film_strip(), at("film-strip.png"));
-    assert_eq!(folder.film(), at("film.png"));
-    assert_eq!(folder.series(), at("series.csv"));
-    assert_eq!(folder.events(), at("events.csv"));
-    assert_eq!(folder.fragments(), at("fragments.csv"));
-    assert_eq!(folder.fragment_tree(), at("fragment-tree.csv"));
-    assert_eq!(folder.summary(), at("summary.json"));
-    assert_eq!(folder.checkpoint(), at("checkpoint.dem"));
+    assert_eq!(folder.file(names::FILM_STRIP), at("film-strip.png"));
+    assert_eq!(folder.file(names::FILM), at("film.png"));
+    assert_eq!(folder.file(names::SERIES), at("series.csv"));
+    assert_eq!(folder.file(names::EVENTS), at("events.csv"));
+    assert_eq!(folder.file(names::FRAGMENTS), at("fragments.csv"));
+    assert_eq!(folder.file(names::FRAGMENT_TREE), at("fragment-tree.csv"));
+    assert_eq!(folder.file(names::SUMMARY), at("summary.json"));
+    assert_eq!(folder.file(names::CHECKPOINT), at("checkpoint.dem"));
     assert_eq!(folder.plot("a/b: c"), at("plots/a_b_ c.svg"));
     assert!(contents(folder.path()).is_empty());
 }
@@ -161,8 +162,8 @@ fn plots_and_summaries_are_replaced_whole() {
         steps: 7,
         error: f64::NAN,
     };
-    write_json(&folder.summary(), &summary).unwrap();
-    let text = fs::read_to_string(folder.summary()).unwrap();
+    write_json(&folder.file(names::SUMMARY), &summary).unwrap();
+    let text = fs::read_to_string(folder.file(names::SUMMARY)).unwrap();
     assert_eq!(text, "{\n  \"steps\": 7,\n  \"error\": null\n}\n");
     assert_eq!(contents(folder.path()).len(), 2);
 }
@@ -172,7 +173,7 @@ fn one_run_at_a_time() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
     let path = folder.path().to_owned();
-    fs::write(folder.summary(), "mine").unwrap();
+    fs::write(folder.file(names::SUMMARY), "mine").unwrap();
     let clone = folder.clone();
     drop(folder);
     for existing in [Existing::Refuse, Existing::Replace, Existing::Continue] {
@@ -180,7 +181,7 @@ fn one_run_at_a_time() {
         assert_eq!(error.exit_code(), 2);
         assert_eq!(error.problem, "another run is writing into it");
     }
-    assert_eq!(fs::read(clone.summary()).unwrap(), b"mine");
+    assert_eq!(fs::read(clone.file(names::SUMMARY)).unwrap(), b"mine");
     drop(clone);
     ResultsFolder::create(&path, Existing::Continue).unwrap();
     let error = ResultsFolder::create(&path, Existing::Refuse).unwrap_err();
@@ -196,7 +197,7 @@ fn a_scene_that_is_not_that_of_a_run_is_kept() {
     let folder = results_in(&parent);
     let path = folder.path().to_owned();
     folder.write_scene("dem-run 1", "version = 1\n").unwrap();
-    let written = fs::read_to_string(folder.scene()).unwrap();
+    let written = fs::read_to_string(folder.file(names::SCENE)).unwrap();
     assert!(
         written.starts_with("# Written by dem-run (dem-run 1)"),
         "{written}"
@@ -205,9 +206,9 @@ fn a_scene_that_is_not_that_of_a_run_is_kept() {
     folder.write_scene("dem-run 2", "version = 1\n").unwrap();
     drop(folder);
     let folder = ResultsFolder::create(&path, Existing::Replace).unwrap();
-    assert!(!folder.scene().exists());
-    fs::write(folder.scene(), "version = 1\n").unwrap();
-    fs::write(folder.summary(), "{}").unwrap();
+    assert!(!folder.file(names::SCENE).exists());
+    fs::write(folder.file(names::SCENE), "version = 1\n").unwrap();
+    fs::write(folder.file(names::SUMMARY), "{}").unwrap();
     let refused = [folder.write_scene("dem-run 1", "").unwrap_err(), {
         drop(folder);
         ResultsFolder::create(&path, Existing::Replace).unwrap_err()

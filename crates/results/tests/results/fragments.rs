@@ -3,14 +3,15 @@
 use std::fs;
 use std::io::Write;
 
-use dem_results::fragments::{COLUMNS, TREE_COLUMNS};
-use dem_results::{FragmentRow, Table, TreeRow, append_fragments, write_fragment_tree};
+use dem_results::columns::{header, write_table};
+use dem_results::{FragmentRow, Table, TreeRow, append_fragments};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
-fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow<'static> {
+fn fragment(time_s: f64, id: u32, numbers: [f64; 15]) -> FragmentRow<'static> {
     let three = |first: usize| [numbers[first], numbers[first + 1], numbers[first + 2]];
     FragmentRow {
+        time_s,
         fragment_id: id,
         parent_id: id.checked_sub(1),
         particles: 10 * id,
@@ -30,13 +31,13 @@ fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow<'static> {
 fn fragments_look_as_documented() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = Table::create(&path, COLUMNS).unwrap();
+    let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
     let whole = [
         0.25, 1.0, -2.0, 3.0, 0.5, -0.0, 1e-9, 7.0, 8.0, 9.0, -1.0, 0.0, 1e3, 0.125, 0.75,
     ];
-    append_fragments(&mut file, 0.0, &[fragment(0, whole)]).unwrap();
-    append_fragments(&mut file, 1.5e-3, &[]).unwrap();
-    append_fragments(&mut file, 2.5e-3, &[fragment(2, [1.0 / 3.0; 15])]).unwrap();
+    append_fragments(&mut file, &[fragment(0.0, 0, whole)]).unwrap();
+    append_fragments(&mut file, &[]).unwrap();
+    append_fragments(&mut file, &[fragment(2.5e-3, 2, [1.0 / 3.0; 15])]).unwrap();
     let third = ",0.3333333333333333".repeat(15);
     let text = format!(
         "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m,body,material\n\
@@ -66,15 +67,15 @@ fn the_tree_looks_as_documented_and_is_replaced_whole() {
         ended_s: None,
         particles: 4,
     };
-    write_fragment_tree(&path, [root, root, root].into_iter()).unwrap();
-    write_fragment_tree(&path, [root, child].into_iter()).unwrap();
+    write_table(&path, &TreeRow::COLUMNS, [root, root, root]).unwrap();
+    write_table(&path, &TreeRow::COLUMNS, [root, child]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
         "fragment_id,parent_id,created_s,ended_s,particles\n0,,0,0.0025,7\n1,0,0.0025,,4\n"
     );
-    assert_eq!(TREE_COLUMNS.split(',').count(), 5);
+    assert_eq!(TreeRow::COLUMNS.len(), 5);
     let missing = folder.path().join("missing/tree.csv");
-    let error = write_fragment_tree(&missing, [root].into_iter()).unwrap_err();
+    let error = write_table(&missing, &TreeRow::COLUMNS, [root]).unwrap_err();
     assert_eq!(error.exit_code(), 1);
 }
 
@@ -82,8 +83,8 @@ fn the_tree_looks_as_documented_and_is_replaced_whole() {
 fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = Table::create(&path, COLUMNS).unwrap();
-    append_fragments(&mut file, 0.0, &[fragment(0, [1.0; 15])]).unwrap();
+    let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
+    append_fragments(&mut file, &[fragment(0.0, 0, [1.0; 15])]).unwrap();
     let length = file.length_bytes();
     let before = fs::read(&path).unwrap();
     for (length, said) in [
@@ -91,15 +92,15 @@ fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
         (length - 1, "no row ends"),
         (0, "no row ends"),
     ] {
-        let error = Table::continue_at(&path, COLUMNS, length).unwrap_err();
+        let error = Table::continue_at(&path, &header(&FragmentRow::COLUMNS), length).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(error.problem.contains(said), "{error}");
         assert_eq!(fs::read(&path).unwrap(), before);
     }
     let other = folder.path().join("other.csv");
-    fs::write(&other, format!("{TREE_COLUMNS}\n")).unwrap();
-    let at = TREE_COLUMNS.len() as u64 + 1;
-    let error = Table::continue_at(&other, COLUMNS, at).unwrap_err();
+    fs::write(&other, format!("{}\n", header(&TreeRow::COLUMNS))).unwrap();
+    let at = header(&TreeRow::COLUMNS).len() as u64 + 1;
+    let error = Table::continue_at(&other, &header(&FragmentRow::COLUMNS), at).unwrap_err();
     assert!(error.problem.contains("first line"), "{error}");
 }
 
@@ -115,20 +116,20 @@ proptest! {
     ) {
         let folder = tempdir().unwrap();
         let at = at.index(moments.len() + 1);
-        let rows = |count: u32| (0..count).map(|id| fragment(id, numbers)).collect::<Vec<_>>();
+        let rows = |time_s: f64, count: u32| (0..count).map(|id| fragment(time_s, id, numbers)).collect::<Vec<_>>();
         let write = |name: &str, interrupted: bool| {
             let path = folder.path().join(name);
-            let mut file = Table::create(&path, COLUMNS).unwrap();
+            let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
             for (number, count) in moments.iter().enumerate() {
                 if interrupted && number == at {
                     let length = file.length_bytes();
-                    append_fragments(&mut file, 9.0, &rows(3)).unwrap();
+                    append_fragments(&mut file, &rows(9.0, 3)).unwrap();
                     drop(file);
                     // A possible state of a row that was being written.
                     fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(half.as_bytes()).unwrap();
-                    file = Table::continue_at(&path, COLUMNS, length).unwrap();
+                    file = Table::continue_at(&path, &header(&FragmentRow::COLUMNS), length).unwrap();
                 }
-                append_fragments(&mut file, number as f64, &rows(*count)).unwrap();
+                append_fragments(&mut file, &rows(number as f64, *count)).unwrap();
             }
             fs::read_to_string(&path).unwrap()
         };
@@ -136,7 +137,7 @@ proptest! {
         prop_assert_eq!(&write("part.csv", true), &text);
         // The numbers are read back unchanged.
         let mut lines = text.lines();
-        prop_assert_eq!(lines.next(), Some(COLUMNS));
+        prop_assert_eq!(lines.next(), Some(&*header(&FragmentRow::COLUMNS)));
         let wanted = moments.iter().enumerate().flat_map(|(number, count)| (0..*count).map(move |id| (number, id)));
         let mut read = 0;
         for (line, (number, id)) in lines.zip(wanted) {
@@ -156,9 +157,9 @@ proptest! {
 fn thousands_of_fragments_of_one_moment_are_all_there() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = Table::create(&path, COLUMNS).unwrap();
-    let rows: Vec<FragmentRow> = (0..2500).map(|id| fragment(id, [1.0; 15])).collect();
-    append_fragments(&mut file, 1.0, &rows).unwrap();
+    let mut file = Table::create(&path, &header(&FragmentRow::COLUMNS)).unwrap();
+    let rows: Vec<FragmentRow> = (0..2500).map(|id| fragment(1.0, id, [1.0; 15])).collect();
+    append_fragments(&mut file, &rows).unwrap();
     let text = fs::read_to_string(&path).unwrap();
     let ids: Vec<u32> = text
         .lines()

@@ -3,6 +3,7 @@
 use std::fs;
 
 use dem_io::body::vtp;
+use dem_results::folder::names;
 use dem_results::{
     Frame, FrameFiles, NamedArray, ResultsFolder, Values, WallFiles, WallFrame, WallTriangles,
     read_all_arrays, write_frame,
@@ -295,7 +296,7 @@ fn the_index_lists_every_frame_with_its_time() {
     }
     assert_eq!(frames.times_s(), [0.0, 5e-3, 0.01]);
     assert_eq!(
-        fs::read_to_string(folder.frames_index()).unwrap(),
+        fs::read_to_string(folder.file(names::INDEX)).unwrap(),
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n    \
          <DataSet timestep=\"0e0\" part=\"0\" file=\"frames/frame_000000.vtp\"/>\n    \

@@ -3,6 +3,7 @@
 use std::fs;
 
 use dem_results::PictureFiles;
+use dem_results::folder::names;
 use tempfile::tempdir;
 
 use super::{contents, results_in};
@@ -25,8 +26,8 @@ fn pictures_are_numbered_and_go_on() {
     assert_eq!(fs::read(folder.picture(2)).unwrap(), [9]);
     pictures.write_film(&[1, 2], &[3]).unwrap();
     pictures.write_film(&[4], &[5, 6]).unwrap();
-    assert_eq!(fs::read(folder.film_strip()).unwrap(), [4]);
-    assert_eq!(fs::read(folder.film()).unwrap(), [5, 6]);
+    assert_eq!(fs::read(folder.file(names::FILM_STRIP)).unwrap(), [4]);
+    assert_eq!(fs::read(folder.file(names::FILM)).unwrap(), [5, 6]);
     assert_eq!(contents(folder.path()).len(), 5);
 }
 

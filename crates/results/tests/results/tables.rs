@@ -3,7 +3,8 @@
 use std::fs;
 use std::io::Write;
 
-use dem_results::{EVENT_COLUMNS, Event, SeriesFile, Table, event_lines, read_series};
+use dem_results::columns::header;
+use dem_results::{Event, SeriesFile, Table, event_lines, read_series};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
@@ -75,7 +76,7 @@ fn a_series_that_was_damaged_is_refused_with_the_line() {
 fn events_look_as_documented() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("events.csv");
-    let mut events = Table::create(&path, EVENT_COLUMNS).unwrap();
+    let mut events = Table::create(&path, &header(&Event::COLUMNS)).unwrap();
     let planned = Event {
         step: 12,
         time_s: 0.25,
@@ -88,8 +89,8 @@ fn events_look_as_documented() {
         energy_j: None,
         detail: "search begins,\nbodies are near",
     };
-    events.append(&event_lines(&[])).unwrap();
-    events.append(&event_lines(&[event(2), planned])).unwrap();
+    events.append(&event_lines([])).unwrap();
+    events.append(&event_lines([event(2), planned])).unwrap();
     let text = "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail\n\
                 2,2e-6,bond_broken,3,1,2,0.5,-0.001,0,tension,0.1,\n\
                 12,0.25,plan,,,,,,,,,\"search begins, bodies are near\"\n";
@@ -192,14 +193,14 @@ proptest! {
         let of_step = |(step, count): (usize, &usize)| vec![event(step as u64); *count];
         let write = |name: &str, interrupted: bool| {
             let path = folder.path().join(name);
-            let mut events = Table::create(&path, EVENT_COLUMNS).unwrap();
+            let mut events = Table::create(&path, &header(&Event::COLUMNS)).unwrap();
             for (number, step) in steps.iter().enumerate() {
                 if interrupted && number == at {
                     let length = events.length_bytes();
-                    events.append(&event_lines(&[event(1000)])).unwrap();
-                    events = Table::continue_at(&path, EVENT_COLUMNS, length).unwrap();
+                    events.append(&event_lines([event(1000)])).unwrap();
+                    events = Table::continue_at(&path, &header(&Event::COLUMNS), length).unwrap();
                 }
-                events.append(&event_lines(&of_step((number, step)))).unwrap();
+                events.append(&event_lines(of_step((number, step)))).unwrap();
             }
             fs::read(&path).unwrap()
         };

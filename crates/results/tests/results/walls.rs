@@ -3,6 +3,7 @@
 use std::fs;
 
 use dem_io::body::{StoredWalls, read_walls};
+use dem_results::folder::names;
 use dem_results::folder::walls_in;
 use dem_results::{FrameFiles, ResultsFolder, WallFiles, WallFrame, WallTriangles};
 use proptest::prelude::*;
@@ -89,7 +90,7 @@ fn the_index_lists_walls_as_parts_of_a_time() {
     let folder = results_in(&parent);
     let mut frames = FrameFiles::create(&folder, WallFiles::EachFrameAndFixed);
     append(&mut frames, 0.5);
-    let index = fs::read_to_string(folder.frames_index()).unwrap();
+    let index = fs::read_to_string(folder.file(names::INDEX)).unwrap();
     let parts: Vec<&str> = index
         .lines()
         .filter(|line| line.contains("DataSet"))

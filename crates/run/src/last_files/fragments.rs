@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
+use dem_results::columns::write_table;
+use dem_results::folder::names;
 use dem_results::summary::FragmentSummary;
-use dem_results::{ResultsFolder, TreeRow, write_fragment_tree};
+use dem_results::{ResultsFolder, TreeRow};
 
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
@@ -54,7 +56,7 @@ pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<
         particles: cluster.particles,
     };
     let rows = (0..).zip(&clusters.history).map(row);
-    write_fragment_tree(&folder.fragment_tree(), rows)
+    write_table(&folder.file(names::FRAGMENT_TREE), &TreeRow::COLUMNS, rows)
 }
 
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it
@@ -112,19 +114,14 @@ fn discharge_plot(state: &State, end_s: f64) -> Plot {
             points.push([one.time_s, mass_kg]);
         }
         points.push([end_s, mass_kg]);
-        Line {
-            name: name(of),
-            points,
-            dashed: false,
-        }
+        Line::new(name(of), points)
     };
-    Plot {
-        title: "Discharged mass".to_owned(),
-        x: Axis::of("time (s)"),
-        y: Axis::of("mass (kg)"),
-        lines: flows.into_iter().take(MOST_LINES).map(line).collect(),
-        ..Plot::default()
-    }
+    Plot::of(
+        "Discharged mass",
+        "time (s)",
+        "mass (kg)",
+        flows.into_iter().take(MOST_LINES).map(line).collect(),
+    )
 }
 
 /// Cumulative mass over sieve size: a line for each body, and for all if there are several; d50 is
@@ -147,19 +144,16 @@ fn size_plot(fragments: &Fragments, model: &Model) -> Plot {
         }],
         ..Marks::default()
     };
-    let lines = curves.iter().map(|(name, points, _)| Line {
-        name: (*name).to_owned(),
-        points: points.iter().copied().map(millimetres).collect(),
-        dashed: false,
+    let lines = curves.iter().map(|(name, points, _)| {
+        Line::new(*name, points.iter().copied().map(millimetres).collect())
     });
     let mut lines: Vec<Line> = lines.collect();
     let resolved_mm = 1e3 * fragments.all_resolved_from_m(model);
     if resolved_mm > 0.0 {
-        lines.push(Line {
-            name: "unresolved below".to_owned(),
-            points: vec![[resolved_mm, 0.0], [resolved_mm, 1.0]],
-            dashed: true,
-        });
+        lines.push(Line::dashed(
+            "unresolved below",
+            vec![[resolved_mm, 0.0], [resolved_mm, 1.0]],
+        ));
     }
     let mut x = Axis::of("sieve size, the width of a fragment (mm)");
     x.log = true;
@@ -195,15 +189,5 @@ pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
 }
 
 fn plot(title: &str, x: &str, y: &str, points: Vec<[f64; 2]>) -> Plot {
-    Plot {
-        title: title.to_owned(),
-        x: Axis::of(x),
-        y: Axis::of(y),
-        lines: vec![Line {
-            name: title.to_lowercase(),
-            points,
-            dashed: false,
-        }],
-        ..Plot::default()
-    }
+    Plot::of(title, x, y, vec![Line::new(title.to_lowercase(), points)])
 }

@@ -1,7 +1,8 @@
 //! Plots of the time series: energies together, errors together, every measure separately.
 
 use dem_io::Result;
-use dem_plots::{Axis, Line, Plot};
+use dem_plots::{Line, Plot};
+use dem_results::folder::names;
 use dem_results::summary::{ENERGIES, Energy, EnergyKind, Measured};
 use dem_results::{ResultsFolder, Series, read_series};
 use dem_scene::Statistic;
@@ -21,7 +22,7 @@ pub(crate) fn write_plots(
     probes: &[Probe],
     results: &[Measured],
 ) -> Result<()> {
-    let series = read_series(&folder.series())?;
+    let series = read_series(&folder.file(names::SERIES))?;
     let changes = |energy: &Energy| column(&series, energy.name).iter().any(|v| *v != 0.0);
     let changing: Vec<Energy> = ENERGIES.into_iter().filter(changes).collect();
     let names: Vec<&str> = changing.iter().map(|energy| energy.name).collect();
@@ -106,23 +107,18 @@ fn column<'a>(series: &'a Series, name: &str) -> &'a [f64] {
 }
 
 fn plot(series: &Series, title: &str, y: &str, columns: &[&str], suffix: &str) -> Plot {
-    let line = |name: &&str| Line {
-        name: name.trim_end_matches(suffix).replace('_', " "),
-        points: series
-            .times_s
-            .iter()
-            .zip(column(series, name))
-            .map(|(&t, &v)| [t, v])
-            // Missing values have no points.
-            .filter(|[_, v]| !v.is_nan())
-            .collect(),
-        dashed: false,
+    let line = |name: &&str| {
+        Line::new(
+            name.trim_end_matches(suffix).replace('_', " "),
+            series
+                .times_s
+                .iter()
+                .zip(column(series, name))
+                .map(|(&t, &v)| [t, v])
+                // Missing values have no points.
+                .filter(|[_, v]| !v.is_nan())
+                .collect(),
+        )
     };
-    Plot {
-        title: title.to_owned(),
-        x: Axis::of("time (s)"),
-        y: Axis::of(y),
-        lines: columns.iter().map(line).collect(),
-        ..Plot::default()
-    }
+    Plot::of(title, "time (s)", y, columns.iter().map(line).collect())
 }

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use dem_io::Result;
-use dem_results::{MixingRow, write_distribution, write_flows, write_mixing};
+use dem_results::columns::write_table;
+use dem_results::folder::names;
+use dem_results::{DistributionRow, FlowRow, MixingRow};
 
 use super::last_state::LastState;
 use crate::last_files::flows::flow_rows;
@@ -21,9 +23,16 @@ pub(super) fn fragments(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let output = last.scene.output.as_ref();
     let sieves_m = output.map_or(&[][..], |output| &output.sieves_m);
     let rows = fragments.rows(&state.model, sieves_m);
-    write_distribution(&folder.distribution(), &rows)?;
+    write_table(
+        &folder.file(names::DISTRIBUTION),
+        &DistributionRow::COLUMNS,
+        rows,
+    )?;
     let plots = FRAGMENT_PLOTS.iter().map(|name| folder.plot(name));
-    let tables = [folder.fragment_tree(), folder.distribution()];
+    let tables = [
+        folder.file(names::FRAGMENT_TREE),
+        folder.file(names::DISTRIBUTION),
+    ];
     Ok(plots.filter(|path| path.is_file()).chain(tables).collect())
 }
 
@@ -34,8 +43,9 @@ pub(super) fn flow(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     }
     let interval_s = (last.scene.output.as_ref()).and_then(|output| output.flow_s);
     let interval_s = interval_s.unwrap_or(last.end_s / 20.0);
-    let path = last.folder.flow();
-    write_flows(&path, &flow_rows(last.state, interval_s, last.end_s))?;
+    let path = last.folder.file(names::FLOW);
+    let rows = flow_rows(last.state, interval_s, last.end_s);
+    write_table(&path, &FlowRow::COLUMNS, rows)?;
     Ok(vec![path])
 }
 
@@ -54,8 +64,8 @@ pub(super) fn mixing(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
             fraction: cell.fraction,
         })
     };
-    let rows: Vec<MixingRow<'_>> = last.probes.iter().flat_map(of_probe).collect();
-    let path = last.folder.mixing();
-    write_mixing(&path, &rows)?;
+    let rows = last.probes.iter().flat_map(of_probe);
+    let path = last.folder.file(names::MIXING);
+    write_table(&path, &MixingRow::COLUMNS, rows)?;
     Ok(vec![path])
 }

@@ -1,8 +1,9 @@
 //! What leaves through outlets, `discharge.csv`.
 
 use dem_io::Result;
-use dem_results::discharge::COLUMNS;
-use dem_results::{DischargeRow, Table, discharge_lines};
+use dem_results::columns::{header, lines};
+use dem_results::folder::names;
+use dem_results::{DischargeRow, Table};
 
 use super::{Changes, Opening, Output, Saved};
 use dem_engine::state::clusters::sizes::Discharged;
@@ -18,7 +19,10 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     if state.model.rules.outlets.is_empty() {
         return Ok(None);
     }
-    let table = opening.table(&opening.folder.discharge(), COLUMNS)?;
+    let table = opening.table(
+        &opening.folder.file(names::DISCHARGE),
+        &header(&DischargeRow::COLUMNS),
+    )?;
     let written = state.population.discharged.len();
     Ok(Some(Box::new(Discharge { table, written })))
 }
@@ -43,7 +47,7 @@ impl Output for Discharge {
             sieve_m: one.size.sieve_m,
         };
         let rows = all[self.written..].iter().map(row);
-        self.table.append(&discharge_lines(rows))?;
+        self.table.append(&lines(&DischargeRow::COLUMNS, rows))?;
         self.written = all.len();
         Ok(())
     }

@@ -2,7 +2,9 @@
 
 use dem_io::Result;
 use dem_io::text::exact;
-use dem_results::{EVENT_COLUMNS, Event, Table, event_lines};
+use dem_results::columns::header;
+use dem_results::folder::names;
+use dem_results::{Event, Table, event_lines};
 
 use super::{Changes, Opening, Output, Saved};
 use crate::new_step::NewStep;
@@ -17,7 +19,10 @@ const NAMED: usize = 8;
 struct EventTable(Table);
 
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
-    let table = opening.table(&opening.folder.events(), EVENT_COLUMNS)?;
+    let table = opening.table(
+        &opening.folder.file(names::EVENTS),
+        &header(&Event::COLUMNS),
+    )?;
     Ok(Some(Box::new(EventTable(table))))
 }
 
@@ -36,7 +41,7 @@ impl Output for EventTable {
         write_zones(state, table)?;
         write_sleep(state, table)?;
         for NewStep { cause, detail } in changes.new_steps {
-            table.append(&event_lines(&[of_all(state, "time_step", cause, detail)]))?;
+            table.append(&event_lines([of_all(state, "time_step", cause, detail)]))?;
         }
         Ok(())
     }
@@ -69,7 +74,7 @@ fn write_breaks(state: &State, bodies: &[PlacedBody], table: &mut Table) -> Resu
             energy_j: Some(broken.released_j),
             detail: found.map_or("", |(body, _)| &body.name),
         };
-        table.append(&event_lines(&[event]))?;
+        table.append(&event_lines([event]))?;
     }
     Ok(())
 }
@@ -86,11 +91,8 @@ fn write_splits(state: &State, table: &mut Table) -> Result<()> {
         .iter()
         .map(|split| split_text(split, &clusters.history))
         .collect();
-    let events: Vec<Event<'_>> = details
-        .iter()
-        .map(|detail| of_all(state, "split", "", detail))
-        .collect();
-    table.append(&event_lines(&events))
+    let events = (details.iter()).map(|detail| of_all(state, "split", "", detail));
+    table.append(&event_lines(events))
 }
 
 /// Human-readable fragments of one present or former cluster:
@@ -134,7 +136,7 @@ fn write_population(state: &State, table: &mut Table) -> Result<()> {
     let events = &state.scratch.events;
     for one in &events.population {
         let (kind, cause) = kind_and_cause(one);
-        table.append(&event_lines(&[Event {
+        table.append(&event_lines([Event {
             step: events.step,
             time_s: events.time_s,
             position_m: Some(place_m(one)),
@@ -226,7 +228,7 @@ fn detail(event: &PopulationEvent) -> String {
 fn write_zones(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.zones {
         let plural = if news.particles == 1 { "" } else { "s" };
-        table.append(&event_lines(&[Event {
+        table.append(&event_lines([Event {
             step: news.step,
             time_s: news.time_s,
             energy_j: Some(news.lost_j),
@@ -245,7 +247,7 @@ fn write_zones(state: &State, table: &mut Table) -> Result<()> {
 fn write_sleep(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.sleep {
         let plural = if news.bodies == 1 { "body" } else { "bodies" };
-        table.append(&event_lines(&[Event {
+        table.append(&event_lines([Event {
             step: news.step,
             time_s: news.time_s,
             ..of_all(

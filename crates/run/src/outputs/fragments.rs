@@ -1,14 +1,15 @@
 //! The fragments at chosen moments, `fragments.csv`.
 
 use dem_io::Result;
-use dem_results::fragments::COLUMNS;
+use dem_results::columns::header;
+use dem_results::folder::names;
 use dem_results::{FragmentRow, Table, append_fragments};
 
 use super::{Moment, Opening, Output, Saved, TableEnd};
 use dem_engine::stages::clumps::motion::synchronous;
 use dem_engine::stages::ledger::totals::synchronous_motions;
+use dem_engine::state::State;
 use dem_engine::state::clusters::{Fragment, fragments};
-use dem_engine::state::model::Model;
 
 /// Besides at the frames, fragments are written when their number has grown by one in this many.
 /// While there are few, every new one is written, and the number of rows written for all splits
@@ -27,7 +28,10 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     }
     let position = opening.position::<(TableEnd, u64)>()?;
     Ok(Some(Box::new(Fragments {
-        table: opening.table(&opening.folder.fragments(), COLUMNS)?,
+        table: opening.table(
+            &opening.folder.file(names::FRAGMENTS),
+            &header(&FragmentRow::COLUMNS),
+        )?,
         written: position.map_or(0, |(_, written)| written),
     })))
 }
@@ -47,8 +51,8 @@ impl Output for Fragments {
         let moving = Some((&motions[..], &moving[..]));
         let fragments = fragments(clusters, &state.particles, &state.clumps, moving);
         self.written = fragments.len() as u64;
-        let rows = rows(&fragments, &state.model);
-        append_fragments(&mut self.table, state.time_s, &rows)
+        let rows = rows(&fragments, state);
+        append_fragments(&mut self.table, &rows)
     }
 
     fn save(&self) -> Result<Saved> {
@@ -57,8 +61,10 @@ impl Output for Fragments {
 }
 
 /// Fragments as rows of the table of fragments.
-fn rows<'a>(fragments: &[Fragment], model: &'a Model) -> Vec<FragmentRow<'a>> {
+fn rows<'a>(fragments: &[Fragment], state: &'a State) -> Vec<FragmentRow<'a>> {
+    let model = &state.model;
     let row = |fragment: &Fragment| FragmentRow {
+        time_s: state.time_s,
         fragment_id: fragment.fragment_id,
         parent_id: fragment.parent_id,
         particles: fragment.particles,

@@ -2,6 +2,7 @@
 
 use dem_io::Result;
 use dem_results::SeriesFile;
+use dem_results::folder::names;
 
 use super::{Moment, Opening, Output, Saved, TableEnd};
 use dem_engine::state::State;
@@ -12,7 +13,7 @@ use dem_results::summary::{Balance, ENERGIES};
 struct Series(SeriesFile);
 
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
-    let path = opening.folder.series();
+    let path = opening.folder.file(names::SERIES);
     let columns = columns(opening.scene.walls.keys(), opening.probes);
     let file = match opening.position::<TableEnd>()? {
         None => SeriesFile::create(&path, &columns)?,

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
+use dem_results::columns::header;
+use dem_results::folder::names;
 use dem_results::summary::{EquilibriumSummary, Inputs, Summary, Verdict};
-use dem_results::{EVENT_COLUMNS, FrameFiles, ResultsFolder, SeriesFile, Table};
+use dem_results::{Event, FrameFiles, ResultsFolder, SeriesFile, Table};
 use dem_scene::Scene;
 
 use crate::last_files::End;
@@ -130,12 +132,12 @@ impl AtRest<'_> {
         summary: &Summary,
     ) -> Result<()> {
         let columns = series::columns(self.scene.walls.keys(), self.probes);
-        let mut rows = SeriesFile::create(&folder.series(), &columns)?;
+        let mut rows = SeriesFile::create(&folder.file(names::SERIES), &columns)?;
         rows.append(
             self.state.time_s,
             &series::row(self.state, self.balance, measured),
         )?;
-        Table::create(&folder.events(), EVENT_COLUMNS)?;
+        Table::create(&folder.file(names::EVENTS), &header(&Event::COLUMNS))?;
         let walls = WallOutput::of(self.state);
         let mut frames = FrameFiles::create(folder, walls.files());
         order.write(self.state, &walls, &mut frames)?;

@@ -8,6 +8,7 @@ use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
 use dem_plan::{Plan, plan};
 use dem_results::checkpoint::read_checkpoint;
+use dem_results::folder::names;
 use dem_results::{Existing, ResultsFolder};
 use dem_runner::snapshot::Snapshot;
 use dem_scene::{Scene, read_bodies};
@@ -235,7 +236,7 @@ fn threads_and_interruptions_do_not_change_the_bits() {
     run_into(&folder, planned(&scene, 1), &scene, None, 0.4).unwrap_err();
     drop(folder);
     let folder = ResultsFolder::create(&parted, Existing::Continue).unwrap();
-    let snapshot = read_checkpoint(&folder.checkpoint()).unwrap();
+    let snapshot = read_checkpoint(&folder.file(names::CHECKPOINT)).unwrap();
     let snapshot = Snapshot::from_bytes(&snapshot).unwrap();
     run_into(&folder, planned(&scene, 1), &scene, Some(snapshot), 2.0).unwrap();
     for name in ["series.csv", "events.csv", "frames/frame_000002.vtp"] {

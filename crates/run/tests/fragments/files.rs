@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use dem_engine::state::clusters::{Cluster, Split};
-use dem_results::fragments::{COLUMNS, TREE_COLUMNS};
-use dem_results::read_series;
-use dem_results::{Existing, ResultsFolder};
+use dem_results::columns::header as first_line;
+use dem_results::folder::names;
+use dem_results::{Existing, FragmentRow, ResultsFolder, TreeRow, read_series};
 use dem_runner::outputs::event_table::split_text;
 use nalgebra::Vector3;
 
@@ -29,8 +29,8 @@ struct Row {
 
 /// The times of fragments.csv, each with its fragments.
 fn moments(folder: &ResultsFolder) -> Vec<(f64, Vec<Row>)> {
-    let (header, rows) = table(&folder.fragments());
-    assert_eq!(header.join(","), COLUMNS);
+    let (header, rows) = table(&folder.file(names::FRAGMENTS));
+    assert_eq!(header.join(","), first_line(&FragmentRow::COLUMNS));
     let mut moments: Vec<(f64, Vec<Row>)> = Vec::new();
     for row in rows {
         let number = |at: usize| row[at].parse::<f64>().unwrap();
@@ -60,8 +60,8 @@ fn moments(folder: &ResultsFolder) -> Vec<(f64, Vec<Row>)> {
 type TreeRow = (u32, Option<u32>, f64, Option<f64>, u32);
 
 fn tree(folder: &ResultsFolder) -> Vec<TreeRow> {
-    let (header, rows) = table(&folder.fragment_tree());
-    assert_eq!(header.join(","), TREE_COLUMNS);
+    let (header, rows) = table(&folder.file(names::FRAGMENT_TREE));
+    assert_eq!(header.join(","), first_line(&TreeRow::COLUMNS));
     let known = |text: &str| (!text.is_empty()).then(|| text.to_owned());
     rows.into_iter()
         .map(|row| {
@@ -153,7 +153,7 @@ fn fragments_are_written_at_frames_and_whenever_they_have_become_many_more() {
         assert!(is_frame || after > before + before / 20);
     }
     // And no row of the time series with many more was skipped.
-    for time_s in read_series(&folder.series()).unwrap().times_s {
+    for time_s in read_series(&folder.file(names::SERIES)).unwrap().times_s {
         let last = moments.iter().rfind(|moment| moment.0 <= time_s).unwrap();
         let written = last.1.len() as u64;
         assert!(count_at(&tree, time_s) <= written + written / 20);
@@ -203,7 +203,7 @@ fn the_tree_tells_who_broke_off_whom() {
 fn every_split_is_an_event() {
     let (_parent, folder, summary) = burst();
     let tree = tree(&folder);
-    let text = fs::read_to_string(folder.events()).unwrap();
+    let text = fs::read_to_string(folder.file(names::EVENTS)).unwrap();
     let splits: Vec<&str> = text
         .lines()
         .filter(|line| line.contains(",split,"))
@@ -265,7 +265,7 @@ fn the_summary_says_what_the_bodies_broke_into() {
     let begin = format!("\nfragments    {}, the largest 0.", said.count);
     assert!(text.contains(&begin), "{text}");
     let json: serde_json::Value =
-        serde_json::from_slice(&fs::read(folder.summary()).unwrap()).unwrap();
+        serde_json::from_slice(&fs::read(folder.file(names::SUMMARY)).unwrap()).unwrap();
     assert_eq!(json["fragments"]["count"], said.count);
     assert_eq!(json["fragments"]["splits"], said.splits);
     let fraction = json["fragments"]["mass_fraction_of_largest"].as_f64();
@@ -283,14 +283,14 @@ fn where_nothing_can_break_nothing_is_said_of_fragments() {
     let summary = run_into(&folder, plan, &scene, None, 2.0).unwrap();
     assert!(!summary.to_string().contains("fragments"));
     assert!(
-        !fs::read_to_string(folder.summary())
+        !fs::read_to_string(folder.file(names::SUMMARY))
             .unwrap()
             .contains("fragments")
     );
-    assert!(folder.series().exists());
+    assert!(folder.file(names::SERIES).exists());
     for path in [
-        folder.fragments(),
-        folder.fragment_tree(),
+        folder.file(names::FRAGMENTS),
+        folder.file(names::FRAGMENT_TREE),
         folder.plot("fragments"),
         folder.plot("fragment_sizes"),
     ] {

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Write;
 
 use dem_results::checkpoint::read_checkpoint;
+use dem_results::folder::names;
 use dem_results::{Existing, ResultsFolder};
 use dem_runner::snapshot::Snapshot;
 
@@ -18,7 +19,7 @@ fn after_an_interruption_the_tables_are_the_same_bytes() {
     let folder = ResultsFolder::create(&path, Existing::Refuse).unwrap();
     // Before the first bond breaks.
     run_into(&folder, planned(&scene), &scene, None, 0.02).unwrap_err();
-    let kept = fs::read(folder.fragments()).unwrap();
+    let kept = fs::read(folder.file(names::FRAGMENTS)).unwrap();
     assert_eq!(kept.iter().filter(|byte| **byte == b'\n').count(), 3);
     drop(folder);
     // Rows after the checkpoint, of which the last one is incomplete.
@@ -27,7 +28,8 @@ fn after_an_interruption_the_tables_are_the_same_bytes() {
         .open(path.join("fragments.csv"));
     file.unwrap().write_all(&kept[..kept.len() - 7]).unwrap();
     let folder = ResultsFolder::create(&path, Existing::Continue).unwrap();
-    let snapshot = Snapshot::from_bytes(&read_checkpoint(&folder.checkpoint()).unwrap()).unwrap();
+    let snapshot =
+        Snapshot::from_bytes(&read_checkpoint(&folder.file(names::CHECKPOINT)).unwrap()).unwrap();
     run_into(&folder, planned(&scene), &scene, Some(snapshot), 2.0).unwrap();
     for name in [
         "fragments.csv",
@@ -50,8 +52,9 @@ fn a_table_of_fragments_that_is_gone_is_told() {
     let scene = bursting();
     let folder = ResultsFolder::create(&path, Existing::Refuse).unwrap();
     run_into(&folder, planned(&scene), &scene, None, 0.02).unwrap_err();
-    fs::remove_file(folder.fragments()).unwrap();
-    let snapshot = Snapshot::from_bytes(&read_checkpoint(&folder.checkpoint()).unwrap()).unwrap();
+    fs::remove_file(folder.file(names::FRAGMENTS)).unwrap();
+    let snapshot =
+        Snapshot::from_bytes(&read_checkpoint(&folder.file(names::CHECKPOINT)).unwrap()).unwrap();
     let error = run_into(&folder, planned(&scene), &scene, Some(snapshot), 2.0).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(error.place.ends_with("fragments.csv"), "{error}");

@@ -5,6 +5,7 @@ use std::fs;
 use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::step::{advance, interact};
 use dem_results::checkpoint::read_checkpoint;
+use dem_results::folder::names;
 use dem_results::{Existing, ResultsFolder};
 use dem_runner::snapshot::Snapshot;
 
@@ -198,7 +199,7 @@ fn a_resumed_run_ends_what_the_whole_one_ends() {
     let parent = tempfile::tempdir().unwrap();
     let whole = ResultsFolder::create(&parent.path().join("whole"), Existing::Refuse).unwrap();
     run_of(&text, Some(&whole), None, 2.0).unwrap();
-    let of_whole = fs::read(whole.series()).unwrap();
+    let of_whole = fs::read(whole.file(names::SERIES)).unwrap();
     for (n, stop_at) in [0.1, 0.1975, 0.2, 0.2025, 0.325, 0.5]
         .into_iter()
         .enumerate()
@@ -208,9 +209,12 @@ fn a_resumed_run_ends_what_the_whole_one_ends() {
         run_of(&text, Some(&folder), None, stop_at).unwrap_err();
         drop(folder);
         let folder = ResultsFolder::create(&path, Existing::Continue).unwrap();
-        let bytes = read_checkpoint(&folder.checkpoint()).unwrap();
+        let bytes = read_checkpoint(&folder.file(names::CHECKPOINT)).unwrap();
         let snapshot = Snapshot::from_bytes(&bytes).unwrap();
         run_of(&text, Some(&folder), Some(snapshot), 2.0).unwrap();
-        assert!(fs::read(folder.series()).unwrap() == of_whole, "{stop_at}");
+        assert!(
+            fs::read(folder.file(names::SERIES)).unwrap() == of_whole,
+            "{stop_at}"
+        );
     }
 }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -23,8 +23,8 @@ use dem_pack::cli::Recipe;
 use dem_results::folder::lock_file;
 use dem_scene::{Scene, material_text, scene_from_text, text_of};
 use dem_terminal::program::today;
+use dem_terminal::progress::{ProgressBar, progress_bar};
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::packings::{Packings, spheres_across};
 use super::pool::in_pool;
@@ -492,15 +492,9 @@ impl Job<'_> {
 
 impl CalibrateArguments {
     fn progress_bar(&self, name: &str) -> ProgressBar {
-        if self.quiet || !std::io::stderr().is_terminal() {
-            return ProgressBar::hidden();
-        }
-        let bar = ProgressBar::new(1000);
         let template =
             "calibrate {prefix}[{bar:40}] {percent:>3} % of this round, {eta} left  {msg}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("=> "));
-        }
+        let bar = progress_bar(self.quiet, 1000, template);
         if !name.is_empty() {
             bar.set_prefix(format!("{name} "));
         }

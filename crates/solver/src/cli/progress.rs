@@ -6,7 +6,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Instant;
 
 use dem_io::units::significant;
-use indicatif::{ProgressBar, ProgressStyle};
+use dem_terminal::progress::{ProgressBar, progress_bar};
 
 use dem_runner::SoFar;
 
@@ -63,11 +63,8 @@ impl ShownProgress {
     pub(super) fn new(quiet: bool) -> Self {
         let is_terminal = std::io::stderr().is_terminal();
         let log = (!quiet && !is_terminal).then(|| RefCell::new(Log::new("run ")));
-        let bar = if quiet || !is_terminal {
-            ProgressBar::hidden()
-        } else {
-            bar()
-        };
+        let template = "run {prefix}[{bar:30}] {percent:>3} %  {msg}{eta} left";
+        let bar = progress_bar(quiet, 1000, template);
         Self { bar, log }
     }
 
@@ -118,15 +115,6 @@ impl Log {
             );
         }
     }
-}
-
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::new(1000);
-    let template = "run {prefix}[{bar:30}] {percent:>3} %  {msg}{eta} left";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use dem_io::safe_write::write_visible_json;
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result};
 use dem_results::checkpoint::read_checkpoint;
+use dem_results::folder::names;
 use dem_results::folder::refuse_inputs_among_results;
 use dem_results::{Existing, ResultsFolder, write_json};
 use dem_scene::{Integrator, Scene};
@@ -182,7 +183,7 @@ fn write_unfinished(
         return;
     }
     if let Some(folder) = folder {
-        let _ = write_json(&folder.summary(), unfinished);
+        let _ = write_json(&folder.file(names::SUMMARY), unfinished);
     }
     if as_json {
         let _ = write_standard_json(unfinished);
@@ -262,7 +263,7 @@ fn open_folder(path: Option<(PathBuf, Existing)>, scene: &Scene) -> Result<Optio
 }
 
 fn checkpoint_of(folder: &ResultsFolder) -> Result<Snapshot<'static>> {
-    let path = folder.checkpoint();
+    let path = folder.file(names::CHECKPOINT);
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     Snapshot::from_bytes(&read_checkpoint(&path)?).map_err(within)
 }

@@ -1,11 +1,9 @@
 //! `dem-run stress`: the suite of stiff and extreme scenes.
 
-use std::io::IsTerminal;
-
 use clap::Args;
 use dem_io::{Diagnostic, Result};
+use dem_terminal::progress::progress_bar;
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::pool::in_pool;
 use crate::interrupt::Interrupt;
@@ -33,11 +31,8 @@ pub(super) struct StressArguments {
 /// once the table is printed.
 pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result<()> {
     let cases = chosen(&options.cases)?;
-    let bar = if options.quiet || !std::io::stderr().is_terminal() {
-        ProgressBar::hidden()
-    } else {
-        progress_bar(cases.len())
-    };
+    let template = "stress [{bar:40}] {pos}/{len}  {msg}";
+    let bar = progress_bar(options.quiet, cases.len(), template);
     let mut results: Vec<CaseResult> = Vec::new();
     let tried = in_pool(options.threads, |_| {
         interrupt.run_interruptible(|interrupted| {
@@ -76,12 +71,4 @@ pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result
         ),
         "--json says of every run what was predicted and what was observed",
     ))
-}
-
-fn progress_bar(count: usize) -> ProgressBar {
-    let bar = ProgressBar::new(count as u64);
-    if let Ok(style) = ProgressStyle::with_template("stress [{bar:40}] {pos}/{len}  {msg}") {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar
 }

@@ -17,7 +17,7 @@ use dem_scene::study::{
     settle_references, value_to_find,
 };
 use dem_scene::text_of;
-use indicatif::{ProgressBar, ProgressStyle};
+use dem_terminal::progress::progress_bar;
 
 use self::results::{list, say, write_files};
 use super::progress::Log;
@@ -389,7 +389,8 @@ fn do_what_is_left(
     let todo: Vec<Job> = (jobs.iter().copied())
         .filter(|job| !job.is_done(&runs))
         .collect();
-    let bar = progress_bar(options, todo.len());
+    let template = "sweep [{bar:40}] {pos}/{len} runs  {eta} left";
+    let bar = progress_bar(options.quiet, todo.len(), template);
     let is_logged = !options.quiet && !std::io::stderr().is_terminal();
     let log = RefCell::new(Log::new("sweep "));
     let tell = |done: usize| {
@@ -430,16 +431,4 @@ fn checked(
         files.extend(scene.input_files());
     }
     Ok((values, files.into_iter().collect()))
-}
-
-fn progress_bar(options: &SweepArguments, count: usize) -> ProgressBar {
-    if options.quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(count as u64);
-    if let Ok(style) = ProgressStyle::with_template("sweep [{bar:40}] {pos}/{len} runs  {eta} left")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar
 }
