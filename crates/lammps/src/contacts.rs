@@ -109,14 +109,6 @@ pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Re
                 "write law = \"hertz-mindlin\" without work_of_adhesion",
             ));
         }
-        Law::Conical(_) => {
-            return Err(refused(
-                scene,
-                format!("contacts.{names}.law"),
-                "it has no law of conical tips",
-                "write law = \"hertz-mindlin\" or \"linear\"",
-            ));
-        }
         Law::Linear(law) => {
             let (n, t) = (law.normal_n_m, law.tangential_n_m);
             let ratio = (t / n).sqrt() * tangential_ratio(&law.parameters);

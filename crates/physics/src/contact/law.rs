@@ -1,12 +1,10 @@
 //! The contact laws and rolling friction models available to a pair of materials: the one place
 //! that lists them. See `doc/adding-a-model.md` for how to add another.
 
-pub mod conical;
 pub mod dmt;
 pub mod hertz_mindlin;
 pub mod linear;
 
-use self::conical::Conical;
 use self::dmt::DerjaguinMullerToporov;
 use self::hertz_mindlin::HertzMindlin;
 use self::linear::Linear;
@@ -31,8 +29,6 @@ pub enum Law {
     DerjaguinMullerToporov(DerjaguinMullerToporov),
     /// Springs and dashpots.
     Linear(Linear),
-    /// Conical tips.
-    Conical(Conical),
 }
 
 /// Rolling friction of a pair of materials.
@@ -64,7 +60,6 @@ impl Law {
             Self::HertzMindlin(law) => law,
             Self::DerjaguinMullerToporov(law) => law,
             Self::Linear(law) => law,
-            Self::Conical(law) => law,
         }
     }
 }
@@ -91,7 +86,6 @@ impl ContactKind {
             Law::HertzMindlin(law) => self.with_law(&law.in_lanes(all), all, work),
             Law::DerjaguinMullerToporov(law) => self.with_law(&law.in_lanes(all), all, work),
             Law::Linear(law) => self.with_law(&law.in_lanes(all), all, work),
-            Law::Conical(law) => self.with_law(&law.in_lanes(all), all, work),
         }
     }
 
