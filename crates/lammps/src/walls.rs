@@ -109,14 +109,6 @@ fn regions(scene: &Scene, part: &str, plan: &Plan, wall: &Wall) -> Result<Vec<St
             };
             format!("{region} side out")
         }
-        Shape::Sphere(_) => {
-            return Err(refused(
-                scene,
-                part,
-                "a sphere as a wall is not exported",
-                "leave it out, or run the scene with dem-run",
-            ));
-        }
         Shape::Mesh(mesh) => {
             let up = -Vector3::from(plan.state.model.gravity_m_s2);
             let up = up.try_normalize(0.0).unwrap_or_default();

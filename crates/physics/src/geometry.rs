@@ -14,7 +14,6 @@ pub mod mesh;
 pub mod one_surface;
 pub mod plane;
 pub mod solid_box;
-pub mod sphere;
 mod touch;
 
 pub use dem_io::Bounds;
@@ -26,7 +25,6 @@ pub use mesh::Mesh;
 pub use one_surface::Place;
 pub use plane::Plane;
 pub use solid_box::SolidBox;
-pub use sphere::Sphere;
 pub use touch::Touch;
 
 /// The shape of a wall.
@@ -38,8 +36,6 @@ pub enum Shape {
     Box(SolidBox),
     /// A solid cylinder.
     Cylinder(Cylinder),
-    /// A solid sphere.
-    Sphere(Sphere),
     /// A triangulated surface.
     Mesh(Mesh),
 }
@@ -77,7 +73,6 @@ impl Shape {
             Self::Plane(plane) => Some(plane.touch(centre)),
             Self::Box(solid) => Some(solid.touch(centre)),
             Self::Cylinder(cylinder) => Some(cylinder.touch(centre)),
-            Self::Sphere(sphere) => Some(sphere.touch(centre)),
             Self::Mesh(_) => None,
         }
     }
@@ -102,7 +97,7 @@ impl Shape {
     /// went in.
     pub fn is_finite_solid(&self) -> bool {
         match self {
-            Self::Box(_) | Self::Cylinder(_) | Self::Sphere(_) => true,
+            Self::Box(_) | Self::Cylinder(_) => true,
             Self::Plane(_) | Self::Mesh(_) => false,
         }
     }
@@ -114,7 +109,6 @@ impl Shape {
             Self::Plane(_) => (true, false),
             Self::Box(_) => (solid_box::is_face(feature), false),
             Self::Cylinder(_) => (cylinder::is_end(feature), false),
-            Self::Sphere(_) => (false, false),
             Self::Mesh(mesh) => (mesh.is_flat(feature), mesh.is_fine(feature, radius_m)),
         };
         Place {
@@ -148,7 +142,6 @@ impl Shape {
             Self::Plane(plane) => plane.bounds(),
             Self::Box(solid) => solid.bounds(),
             Self::Cylinder(cylinder) => cylinder.bounds(),
-            Self::Sphere(sphere) => sphere.bounds(),
             Self::Mesh(mesh) => mesh.bounds(),
         }
     }
