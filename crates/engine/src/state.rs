@@ -47,9 +47,10 @@ use self::damping_rate::damping_rate_1_s;
 use self::ledger::EnergyLedger;
 use self::loads::GroupLoad;
 use self::model::Model;
-use self::particles::{Particles, Wrench};
+use self::particles::{Particles, Pose, Wrench};
 use self::partitions::{Idle, divide_busy};
 use self::population::Population;
+use self::renumbered::Renumbered;
 use self::rigid_parts::RigidParts;
 use self::scratch::Scratch;
 use self::sleep::Sleep;
@@ -207,6 +208,19 @@ impl State {
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };
         scratch.particle_resistance = vec![Wrench::default(); resistances];
+    }
+
+    /// The parts that name particles, and the poses of all particles.
+    pub(crate) fn naming_particles(&mut self) -> (&[Pose], [&mut dyn Renumbered; 6]) {
+        let parts: [&mut dyn Renumbered; 6] = [
+            &mut self.supports,
+            &mut self.loads,
+            &mut self.rigid_parts,
+            &mut self.walls,
+            &mut self.bridges,
+            &mut self.contacts,
+        ];
+        (&self.particles.poses, parts)
     }
 
     /// The lists of damping forces: of bonds, and on particles; each with one for each particle, or

@@ -24,12 +24,9 @@
 //! to that.
 
 pub mod assembly;
-pub mod dmt;
-pub mod hertz_mindlin;
 mod jumps;
 pub mod kinematics;
 pub mod law;
-pub mod linear;
 pub mod liquid_bridge;
 mod normal;
 pub mod pair_parameters;

@@ -77,6 +77,31 @@ impl Shape {
         }
     }
 
+    /// The plane, if it is one.
+    pub fn plane(&self) -> Option<&Plane> {
+        match self {
+            Self::Plane(plane) => Some(plane),
+            _ => None,
+        }
+    }
+
+    /// The triangulated surface, if it is one.
+    pub fn mesh(&self) -> Option<&Mesh> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh),
+            _ => None,
+        }
+    }
+
+    /// Whether it is a solid of finite size, out of which a sphere may come on another side than it
+    /// went in.
+    pub fn is_finite_solid(&self) -> bool {
+        match self {
+            Self::Box(_) | Self::Cylinder(_) => true,
+            Self::Plane(_) | Self::Mesh(_) => false,
+        }
+    }
+
     /// What a touch of a sphere of `radius_m` is on. The touch may be in any frame.
     pub fn place(&self, touch: Touch, radius_m: f64) -> Place {
         let feature = touch.feature;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{BodyEntry, BoxShape, ClumpMass, Scene, StartAs, WallShape};
+use dem_scene::{BodyEntry, ClumpMass, Scene, StartAs};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::{place_body, stays_rigid};
@@ -79,19 +79,8 @@ pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
     let radii = read.values().flat_map(|body| &body.radii).copied();
     let smallest_m = radii.fold(f64::INFINITY, f64::min);
     let smallest_m = smallest_m.min(smallest_daughter_m(scene, read));
-    let skin_left_m = scene.walls.values().map(|wall| match &wall.shape {
-        WallShape::Plane(_) => f64::INFINITY,
-        WallShape::Box(BoxShape { min_m, max_m }) => {
-            let sides = [0, 1, 2].map(|k| 0.5 * (max_m[k] - min_m[k]));
-            sides.into_iter().fold(f64::INFINITY, f64::min)
-        }
-        WallShape::Cylinder(pin) => {
-            let length_m = (Vector3::from(pin.to_m) - Vector3::from(pin.from_m)).norm();
-            pin.radius_m.min(0.5 * length_m)
-        }
-        WallShape::Stl { .. } => 0.0,
-    });
-    skin_left_m.fold(FRACTION_OF_SMALLEST * smallest_m, f64::min)
+    let of_walls_m = scene.walls.values().map(|wall| wall.shape.inner_radius_m());
+    of_walls_m.fold(FRACTION_OF_SMALLEST * smallest_m, f64::min)
 }
 
 /// Radius of the smallest daughter of a daughter that is replaced in turn, m: volumes of daughters

@@ -12,11 +12,11 @@ use dem_engine::state::bodies::{PlacedBody, called};
 use dem_engine::state::bridges::Bridges;
 use dem_engine::state::clusters::Clusters;
 use dem_engine::state::contacts::{ContactHistory, ContactModel, Contacts, NO_KIND};
-use dem_physics::contact::dmt::DerjaguinMullerToporov;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::law::ContactKind;
 use dem_physics::contact::law::Law;
-use dem_physics::contact::linear::Linear;
+use dem_physics::contact::law::dmt::DerjaguinMullerToporov;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::linear::Linear;
 use dem_physics::contact::liquid_bridge::LiquidBridge;
 use dem_physics::contact::pair_parameters::{Elastic, PairInput};
 

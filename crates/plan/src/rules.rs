@@ -20,7 +20,7 @@ use dem_engine::state::rules::{
     Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger,
 };
 use dem_engine::state::walls::Wall;
-use dem_physics::geometry::{Bounds, Mesh, Shape};
+use dem_physics::geometry::{Bounds, Mesh};
 use dem_physics::rotation::numbers;
 use dem_physics::shape::inertia::of_union;
 
@@ -266,7 +266,7 @@ const SAMPLES: u64 = 100;
 
 /// Whether the region of an inlet lies inside a closed surface, as far as samples show.
 fn is_inside(inlet: &Inlet, wall: &Wall, state: &State) -> bool {
-    if !matches!(wall.model.shape, Shape::Mesh(_)) {
+    if wall.model.shape.mesh().is_none() {
         return false;
     }
     let region = &state.model.rules.regions[inlet.region];

@@ -6,9 +6,7 @@ use std::sync::Arc;
 
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
-use dem_scene::{
-    BoxShape, InitialOverlap, PlaneShape, Scene, Wall as SceneWall, WallMotion, WallShape,
-};
+use dem_scene::{InitialOverlap, PlaneShape, Scene, Wall as SceneWall, WallMotion, WallShape};
 use nalgebra::Vector3;
 
 use super::contacts::{Kinds, ROUNDING};
@@ -18,7 +16,7 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
 use dem_engine::state::contacts::ContactHistory;
 use dem_engine::state::walls::{Wall, WallContact, WallModel};
-use dem_physics::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
+use dem_physics::geometry::{Frame, Mesh, Shape, Touch};
 use dem_physics::rigid::turn;
 
 pub(super) use self::surface::surface_of;
@@ -138,33 +136,14 @@ pub(super) fn standing(entry: &SceneWall, name: &str) -> Result<(Shape, Frame)> 
 
 /// The shape in the wall's own frame, whose origin is the pivot.
 fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape> {
-    let from_pivot = |point: [f64; 3]| [0, 1, 2].map(|k| point[k] - entry.pivot_m[k]);
-    Ok(match &entry.shape {
-        WallShape::Plane(PlaneShape { point_m, normal }) => {
-            Shape::Plane(Plane::new(from_pivot(*point_m), *normal)?)
+    entry.shape.in_frame_of(entry.pivot_m, |path, unit_m| {
+        let mut surface = surface_of(path, unit_m)?;
+        for vertex in &mut surface.vertices_m {
+            *vertex = [0, 1, 2].map(|k| vertex[k] - entry.pivot_m[k]);
         }
-        WallShape::Box(BoxShape { min_m, max_m }) => {
-            Shape::Box(SolidBox::new(from_pivot(*min_m), from_pivot(*max_m))?)
-        }
-        WallShape::Cylinder(pin) => {
-            let ends = [from_pivot(pin.from_m), from_pivot(pin.to_m)];
-            Shape::Cylinder(Cylinder::new(ends, pin.radius_m)?)
-        }
-        WallShape::Stl {
-            path,
-            unit_m,
-            scale,
-        } => {
-            let mut surface = surface_of(path, unit_m * scale)?;
-            for vertex in &mut surface.vertices_m {
-                *vertex = from_pivot(*vertex);
-            }
-            let mesh = Mesh::from_surface(&surface)?;
-            notes.extend(
-                surface_warnings(&surface, &mesh).map(|odd| format!("wall '{name}': {odd}")),
-            );
-            Shape::Mesh(mesh)
-        }
+        let mesh = Mesh::from_surface(&surface)?;
+        notes.extend(surface_warnings(&surface, &mesh).map(|odd| format!("wall '{name}': {odd}")));
+        Ok(mesh)
     })
 }
 

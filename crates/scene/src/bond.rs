@@ -201,6 +201,11 @@ fn models(kappa: Option<f64>, alpha: f64, moment_ratio: f64) -> [(&'static str, 
     ]
 }
 
+/// Names of the models.
+pub fn bond_models() -> impl Iterator<Item = &'static str> {
+    models(None, 0.0, 0.0).into_iter().map(|(name, _)| name)
+}
+
 /// The model, and the elements of a flat joint.
 fn model(table: &Table<'_>) -> Result<(BondModel, Option<FlatJointLaw>)> {
     let (kappa, alpha) = (

@@ -115,6 +115,16 @@ pub enum ContactLaw {
     },
 }
 
+impl ContactLaw {
+    /// Whether its stiffness is that of the materials.
+    fn needs_moduli(&self) -> bool {
+        match self {
+            Self::HertzMindlin | Self::Dmt { .. } => true,
+            Self::Linear { .. } => false,
+        }
+    }
+}
+
 /// The contacts of a scene, sorted by their materials.
 pub(super) fn read_all(
     root: &Table<'_>,
@@ -150,7 +160,7 @@ fn read(
         return Err(field.fault(problem, remedy));
     }
     let law = law(&table)?;
-    if !matches!(law, ContactLaw::Linear { .. }) {
+    if law.needs_moduli() {
         need_moduli(&table, &pair, materials)?;
     }
     let restitution = table.read("restitution")?;

@@ -67,7 +67,7 @@ mod zone_check;
 pub use as_run::{piped_bodies, scene_as_run};
 pub use bodies::read_bodies;
 pub use body::{BodyEntry, BodySource, PositionOf, WholeMass};
-pub use bond::{BondDamping, BondKind, BondPlasticity, Formulation};
+pub use bond::{BondDamping, BondKind, BondPlasticity, Formulation, bond_models};
 pub use bond_failure::{BondFailure, StrainRateMeasure};
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;

@@ -1,13 +1,11 @@
 //! `[walls.NAME]`
 
 pub(super) mod motion;
-mod shape;
 
 pub use motion::WallMotion;
-pub use shape::{PlaneShape, WallShape};
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::body::BodyEntry;
 use super::direction::ROTATION;
@@ -17,18 +15,23 @@ use super::group::ParticleGroup;
 use super::listing::Listing;
 use super::material::Material;
 use super::names::meaning;
-use super::schema::table_schema;
-use super::shape::{BOX, CYLINDER, UNIT};
+use super::plain_table::plain_table;
+use super::schema::{Kind, table_schema};
+use super::shape::{
+    BOX, BoxShape, CYLINDER, CylinderShape, UNIT, list_stl, read_box, read_cylinder,
+    refuse_without_stl, stl,
+};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
+use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox};
 
 table_schema! {
     /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement or a servo.
     pub(super) static WALL = "[walls.NAME]";
 
     /// An infinite plane.
-    table("plane", &shape::PLANE);
+    table("plane", &PLANE);
     /// A solid box, with particles outside.
     table("box", &BOX);
     /// A solid cylinder, with particles outside.
@@ -61,6 +64,39 @@ table_schema! {
     TABLE;
 }
 
+/// The shape of a wall, before it is rotated.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WallShape {
+    /// `plane = { point, normal }`, infinite, with a normal of length 1.
+    Plane(PlaneShape),
+    /// `box = { min, max }`: solid, with particles outside; `min` is below `max` along every axis.
+    Box(BoxShape),
+    /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
+    Cylinder(CylinderShape),
+    /// `stl`, `unit` and `scale`: triangles.
+    Stl {
+        /// `stl`: the file, resolved against the folder of the scene.
+        path: PathBuf,
+        /// `unit`: size of the file's unit, m.
+        unit_m: f64,
+        /// `scale`: a factor on all lengths, 1 unless given.
+        scale: f64,
+    },
+}
+
+plain_table! {
+    PLANE = "Plane";
+    /// An infinite plane.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct PlaneShape {
+        /// A point on the plane.
+        point_m: [f64; 3] = new("point", Kind::Vector(&LENGTH)).required("[0, 0, 0]");
+        /// Normal into the free side; its length does not matter.
+        normal: [f64; 3] = new("normal", Kind::Direction("a normal"))
+            .required("[0, 0, 1], into the free side");
+    }
+}
+
 /// A wall, fixed or moving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
@@ -77,6 +113,64 @@ pub struct Wall {
     /// `surface_velocity`: velocity of a belt's surface, which the shape does not follow, m/s; 0
     /// unless given. Length 3.
     pub surface_velocity_m_s: [f64; 3],
+}
+
+impl WallShape {
+    /// The shape in a frame whose origin is the pivot, m. `read` gives the surface in a file whose
+    /// unit is this, m, in that frame.
+    pub fn in_frame_of(
+        &self,
+        pivot_m: [f64; 3],
+        read: impl FnOnce(&Path, f64) -> Result<Mesh>,
+    ) -> Result<Shape> {
+        let from_pivot = |point: [f64; 3]| [0, 1, 2].map(|k| point[k] - pivot_m[k]);
+        Ok(match self {
+            Self::Plane(PlaneShape { point_m, normal }) => {
+                Shape::Plane(Plane::new(from_pivot(*point_m), *normal)?)
+            }
+            Self::Box(BoxShape { min_m, max_m }) => {
+                Shape::Box(SolidBox::new(from_pivot(*min_m), from_pivot(*max_m))?)
+            }
+            Self::Cylinder(pin) => {
+                let ends = [from_pivot(pin.from_m), from_pivot(pin.to_m)];
+                Shape::Cylinder(Cylinder::new(ends, pin.radius_m)?)
+            }
+            Self::Stl {
+                path,
+                unit_m,
+                scale,
+            } => Shape::Mesh(read(path, unit_m * scale)?),
+        })
+    }
+
+    /// Two points halfway between which its middle is, m; of a plane twice its point. None: the
+    /// triangles are in a file.
+    pub fn ends_m(&self) -> Option<[[f64; 3]; 2]> {
+        match self {
+            Self::Plane(plane) => Some([plane.point_m; 2]),
+            Self::Box(of) => Some([of.min_m, of.max_m]),
+            Self::Cylinder(pin) => Some([pin.from_m, pin.to_m]),
+            Self::Stl { .. } => None,
+        }
+    }
+
+    /// Radius of a ball that fits behind each point of its surface, m; 0 for triangles, whose edges
+    /// may be arbitrarily sharp.
+    pub fn inner_radius_m(&self) -> f64 {
+        match self {
+            Self::Plane(_) => f64::INFINITY,
+            Self::Box(BoxShape { min_m, max_m }) => {
+                let sides = [0, 1, 2].map(|k| 0.5 * (max_m[k] - min_m[k]));
+                sides.into_iter().fold(f64::INFINITY, f64::min)
+            }
+            Self::Cylinder(pin) => {
+                let [x, y, z] = [0, 1, 2].map(|k| pin.to_m[k] - pin.from_m[k]);
+                let length_m = (x * x + y * y + z * z).sqrt();
+                pin.radius_m.min(0.5 * length_m)
+            }
+            Self::Stl { .. } => 0.0,
+        }
+    }
 }
 
 pub(super) fn read_all(
@@ -107,7 +201,7 @@ pub(super) fn read_all(
 fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path) -> Result<Wall> {
     let table = Table::of(field, &WALL)?;
     Ok(Wall {
-        shape: shape::read(&table, folder)?,
+        shape: read_shape(&table, folder)?,
         material: table
             .need("material")?
             .reference(materials.keys(), "materials")?,
@@ -119,10 +213,50 @@ fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path
 }
 
 pub(super) fn list(wall: &Wall, listing: &mut Listing) {
-    shape::list(&wall.shape, listing);
+    list_shape(&wall.shape, listing);
     listing.text("material", &wall.material);
     listing.value("pivot", &wall.pivot_m);
     listing.value("rotation", &wall.rotation_rad);
     listing.value("surface_velocity", &wall.surface_velocity_m_s);
     motion::list(&wall.motion, listing);
+}
+
+const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
+
+fn read_shape(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
+    let one = "a wall has one shape: remove one, or make two walls";
+    let Some((key, field)) = wall.at_most_one(&SHAPES, one)? else {
+        let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius } or stl = \"plate.stl\"";
+        return Err(wall.fault("has no shape", remedy));
+    };
+    refuse_without_stl(wall, &["unit", "scale"], key)?;
+    match key {
+        "plane" => PlaneShape::read(&Table::of(&field, &PLANE)?).map(WallShape::Plane),
+        "box" => read_box(&field, "less than", |low, high| low < high).map(WallShape::Box),
+        "cylinder" => read_cylinder(&field).map(WallShape::Cylinder),
+        _ => {
+            let (path, unit_m) = stl(&field, wall, folder)?;
+            Ok(WallShape::Stl {
+                path,
+                unit_m,
+                scale: wall.read("scale")?,
+            })
+        }
+    }
+}
+
+fn list_shape(shape: &WallShape, listing: &mut Listing) {
+    match shape {
+        WallShape::Plane(of) => listing.table("plane", &PLANE, |listing| of.list(listing)),
+        WallShape::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
+        WallShape::Cylinder(of) => listing.table("cylinder", &CYLINDER, |listing| of.list(listing)),
+        WallShape::Stl {
+            path,
+            unit_m,
+            scale,
+        } => {
+            list_stl(path, *unit_m, listing);
+            listing.value("scale", scale);
+        }
+    }
 }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::law::ContactKind;
 use dem_run::physics::contact::law::Law;
 use dem_run::physics::contact::law::Rolling;
+use dem_run::physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_run::stages::ledger::bookkeeping::opened;
 use dem_run::stages::search::neighbours::near_pairs;

@@ -15,7 +15,6 @@ use crate::state::bodies::PlacedBody;
 use crate::state::clumps::Clump;
 use crate::state::events::REMOVED;
 use crate::state::walls::Wall;
-use dem_physics::geometry::Shape;
 
 /// A gap smaller than this fraction of the body's extent counts as closed.
 const CLOSED: f64 = 1e-6;
@@ -311,7 +310,7 @@ impl FreeBody {
     fn leaves(&self, wall: &Wall, from_s: f64) -> bool {
         let velocity = self.velocity_after(from_s);
         let centre = self.centre_after(from_s);
-        if let Shape::Plane(_) = wall.model.shape {
+        if wall.model.shape.plane().is_some() {
             let mut found = Vec::new();
             let to_wall = wall.frame.all_to_wall();
             wall.model

@@ -24,7 +24,7 @@ use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Wall, WallContact, WallLoad};
 use dem_physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
 use dem_physics::contact::law::ContactKind;
-use dem_physics::geometry::{Frame, Shape, Touch};
+use dem_physics::geometry::{Frame, Touch};
 use dem_physics::number::Vec3;
 
 /// Contacts with walls, and their motion.
@@ -149,9 +149,7 @@ pub(crate) fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Syn
 
 /// A point of a wall, m, and the unit vector out of it, if it is a plane.
 pub(crate) fn plane_in_space(wall: &Wall) -> Option<[Vector3<f64>; 2]> {
-    let Shape::Plane(plane) = &wall.model.shape else {
-        return None;
-    };
+    let plane = wall.model.shape.plane()?;
     let point = wall.frame.to_space(plane.point_m());
     let normal = wall.frame.direction_to_space(plane.normal());
     Some([point.into(), normal.into()])
@@ -242,7 +240,7 @@ fn set_chunks<'a>(walls: &[Wall], meetings: &'a mut Vec<Meetings>) -> &'a mut [M
 fn find_meetings(wall: &Wall, particles: &Particles, meetings: &mut Meetings) {
     let to_wall = wall.frame.all_to_wall();
     let bounds = wall.model.shape.bounds();
-    let is_solid = matches!(wall.model.shape, Shape::Box(_) | Shape::Cylinder(_));
+    let is_solid = wall.model.shape.is_finite_solid();
     let Meetings {
         of: (_, range),
         touches,

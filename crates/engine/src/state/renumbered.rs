@@ -47,7 +47,7 @@ impl NewNumbers<'_> {
     }
 }
 
-/// Part of a state that names particles. All of them are listed in `stages/population.rs`.
+/// Part of a state that names particles. All of them are listed in `state.rs`.
 pub(crate) trait Renumbered {
     /// Takes the new numbers, and forgets particles that are gone.
     fn renumber(&mut self, by: &NewNumbers<'_>);

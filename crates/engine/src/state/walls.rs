@@ -120,7 +120,7 @@ impl Wall {
 
     /// Bounding box in space, m: infinite for a plane.
     pub fn bounds_in_space(&self) -> Bounds {
-        if matches!(self.model.shape, Shape::Plane(_)) {
+        if self.model.shape.plane().is_some() {
             return self.model.shape.bounds();
         }
         let corners = self.model.shape.bounds().corners();

@@ -1,10 +1,14 @@
 //! The contact laws and rolling friction models available to a pair of materials: the one place
 //! that lists them. See `doc/adding-a-model.md` for how to add another.
 
-use super::dmt::DerjaguinMullerToporov;
-use super::hertz_mindlin::HertzMindlin;
+pub mod dmt;
+pub mod hertz_mindlin;
+pub mod linear;
+
+use self::dmt::DerjaguinMullerToporov;
+use self::hertz_mindlin::HertzMindlin;
+use self::linear::Linear;
 use super::kinematics::ContactKinematics;
-use super::linear::Linear;
 use super::liquid_bridge::LiquidBridge;
 use super::normal::{ImpactLaw, NormalLaw};
 use super::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};

@@ -80,4 +80,8 @@ pub trait ImpactLaw {
 
     /// Largest overlap of an impact at a speed, m/s, without damping, m: damping reduces it.
     fn overlap_at_impact_m(&self, effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64;
+
+    /// Largest force with which ends that touch attract each other, N, with an effective radius, m;
+    /// 0 without attraction.
+    fn largest_attraction_n(&self, effective_radius_m: f64) -> f64;
 }

@@ -3,11 +3,11 @@
 use super::avx2::Lanes4;
 use super::avx512::Lanes8;
 use super::{Lanes, MOST};
-use crate::contact::hertz_mindlin::HertzMindlin;
 use crate::contact::kinematics::{
     ContactKinematics, ContactSphere, WallPoint, contact_kinematics, wall_contact_kinematics,
 };
-use crate::contact::linear::Linear;
+use crate::contact::law::hertz_mindlin::HertzMindlin;
+use crate::contact::law::linear::Linear;
 use crate::contact::pair_parameters::PairParameters;
 use crate::contact::relaxation::relaxed;
 use crate::contact::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};

@@ -3,8 +3,8 @@
 
 use super::world::{Body, World, ZERO, material};
 use dem_physics::contact::NormalLaw;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
-use dem_physics::contact::linear::Linear;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::linear::Linear;
 use dem_physics::contact::pair_parameters::PairInput;
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
 use dem_physics::number::Vec3;

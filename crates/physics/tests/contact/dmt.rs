@@ -3,8 +3,8 @@
 use super::assert_near;
 use super::world::{Body, RIGID, World, material};
 use dem_physics::contact::ImpactLaw;
-use dem_physics::contact::dmt::DerjaguinMullerToporov;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::dmt::DerjaguinMullerToporov;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::pair_parameters::PairInput;
 use dem_physics::contact::rolling::NoRolling;
 use dem_physics::number::Vec3;

@@ -1,11 +1,11 @@
 //! The formulas of doc/contacts.md, computed here from the page, compared with the program.
 
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::kinematics::{
     ContactKinematics, ContactSphere, WallPoint, contact_kinematics, torques,
     wall_contact_kinematics,
 };
-use dem_physics::contact::linear::Linear;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::linear::Linear;
 use dem_physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
 use dem_physics::contact::{ContactSprings, NormalLaw, response};

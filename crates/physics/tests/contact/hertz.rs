@@ -3,9 +3,9 @@
 use super::world::{Body, RIGID, World, Z, frictionless, material};
 use super::{assert_near, reference};
 use dem_physics::contact::ImpactLaw;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
-use dem_physics::contact::linear::Linear;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::linear::Linear;
 use dem_physics::contact::rolling::{ElasticPlastic, NoRolling};
 use dem_physics::contact::{ContactSprings, NormalLaw, linearised, response};
 use dem_physics::number::Vec3;

@@ -3,7 +3,7 @@
 use super::reference;
 use super::world::{Body, RIGID, World, material};
 use dem_physics::contact::ImpactLaw;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::pair_parameters::{AttractiveDamping, PairInput, TangentialUnloading};
 use dem_physics::contact::rolling::NoRolling;
 use dem_physics::number::Vec3;

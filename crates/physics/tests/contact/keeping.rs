@@ -1,11 +1,11 @@
 //! Invariants of every contact law.
 
 use super::world::{Body, Vector, World, ZERO, material};
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::kinematics::{
     ContactKinematics, ContactSphere, contact_kinematics, torques,
 };
-use dem_physics::contact::linear::Linear;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::linear::Linear;
 use dem_physics::contact::pair_parameters::PairInput;
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
 use dem_physics::contact::{ContactSprings, NormalLaw, Response, response};

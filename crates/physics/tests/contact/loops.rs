@@ -1,9 +1,9 @@
 //! No closed loop creates energy.
 
 use super::world::{Vector, Z, ZERO, material};
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::kinematics::ContactKinematics;
-use dem_physics::contact::linear::Linear;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::linear::Linear;
 use dem_physics::contact::pair_parameters::{PairInput, TangentialUnloading};
 use dem_physics::contact::rolling::ElasticPlastic;
 use dem_physics::contact::{ContactEnergy, ContactSprings, NormalLaw, Response, response};

@@ -1,8 +1,8 @@
 //! Overlaps of pairs that separate by breakage.
 
 use super::world::{Body, RIGID, World, frictionless, material};
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::kinematics::ContactKinematics;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::relaxation::{Relaxed, relaxed};
 use dem_physics::contact::rolling::NoRolling;
 use dem_physics::contact::{ContactSprings, response};

@@ -5,8 +5,8 @@ use super::world::{Body, RIGID, World, material};
 use super::{assert_near, reference};
 use dem_physics::contact::ImpactLaw;
 use dem_physics::contact::NormalLaw;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
-use dem_physics::contact::linear::Linear;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::linear::Linear;
 use dem_physics::contact::pair_parameters::{AttractiveDamping, PairInput};
 use dem_physics::contact::restitution::{
     damping_ratio, damping_ratio_with_attraction, restitution,

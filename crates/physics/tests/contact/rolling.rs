@@ -3,7 +3,7 @@
 use super::world::{Body, RIGID, World, material};
 use super::{assert_near, reference};
 use dem_physics::contact::Response;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::pair_parameters::PairInput;
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
 use dem_physics::number::Vec3;

@@ -213,7 +213,7 @@ fn cover(wall: &Wall, direction: Vector3<f64>, across: &Across) -> Cover {
             };
             Cover::Within(seen((0..POINTS).map(point).collect()))
         }
-        WallShape::Stl { .. } => Cover::Unknown,
+        _ => Cover::Unknown,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Where the walls of a test are at the start.
 
-use dem_scene::{Wall, WallShape};
+use dem_scene::Wall;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Initial position of a point of a wall's shape.
@@ -13,10 +13,6 @@ pub(super) fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
 /// The middle of a wall. None: it is not known where the surface of an STL file would meet the
 /// body.
 pub(super) fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
-    Some(match &wall.shape {
-        WallShape::Plane(plane) => placed(wall, plane.point_m),
-        WallShape::Box(of) => 0.5 * (placed(wall, of.min_m) + placed(wall, of.max_m)),
-        WallShape::Cylinder(of) => 0.5 * (placed(wall, of.from_m) + placed(wall, of.to_m)),
-        WallShape::Stl { .. } => return None,
-    })
+    let [from, to] = wall.shape.ends_m()?;
+    Some(0.5 * (placed(wall, from) + placed(wall, to)))
 }

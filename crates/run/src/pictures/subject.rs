@@ -12,7 +12,7 @@ use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::Cluster;
 use dem_engine::state::regions::Region;
 use dem_engine::state::walls::Wall;
-use dem_physics::geometry::{Bounds, Shape};
+use dem_physics::geometry::{Bounds, Mesh, Shape};
 
 /// Distance to which planes are drawn beyond the particles, as a fraction of the width of these.
 const ROOM: f64 = 0.55;
@@ -154,41 +154,44 @@ fn half_spaces(walls: &[Wall]) -> Vec<HalfSpace> {
 }
 
 fn half_space(wall: &Wall) -> Option<HalfSpace> {
-    match &wall.model.shape {
-        Shape::Plane(plane) => Some(HalfSpace {
-            point_m: wall.frame.to_space(plane.point_m()),
-            normal: wall.frame.direction_to_space(plane.normal()),
-        }),
-        _ => None,
-    }
+    let plane = wall.model.shape.plane()?;
+    Some(HalfSpace {
+        point_m: wall.frame.to_space(plane.point_m()),
+        normal: wall.frame.direction_to_space(plane.normal()),
+    })
 }
 
 /// The corners of the triangles of a shape in its own frame, m. None: a plane is infinite.
 pub(crate) fn corners_m(shape: &Shape) -> Option<Vec<[[f64; 3]; 3]>> {
-    let surface = match shape {
-        Shape::Plane(_) => return None,
-        Shape::Mesh(mesh) => return Some(mesh.corners_m().collect()),
-        Shape::Box(solid) => Surface::solid_box(&solid.bounds()),
-        Shape::Cylinder(cylinder) => Surface::cylinder(cylinder.ends_m(), cylinder.radius_m()),
-    };
+    if let Some(mesh) = shape.mesh() {
+        return Some(mesh.corners_m().collect());
+    }
+    let surface = solid(shape)?;
     Some(surface.triangles.iter().map(|t| t.corners_m).collect())
 }
 
 /// A wall in its present position. None: a plane is infinite.
 fn finite(wall: &Wall) -> Option<Surface> {
-    let in_its_frame = match &wall.model.shape {
-        Shape::Plane(_) => return None,
-        Shape::Box(solid) => Surface::solid_box(&solid.bounds()),
-        Shape::Cylinder(cylinder) => Surface::cylinder(cylinder.ends_m(), cylinder.radius_m()),
-        Shape::Mesh(mesh) => {
-            let vertices_m: Vec<[f64; 3]> = mesh.corners_m().flatten().collect();
-            let triangles: Vec<[u32; 3]> = (0..vertices_m.len() as u32 / 3)
-                .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-                .collect();
-            Surface::mesh(&vertices_m, &triangles)
-        }
-    };
+    let shape = &wall.model.shape;
+    let in_its_frame = shape.mesh().map(two_sided).or_else(|| solid(shape))?;
     Some(in_its_frame.moved(&|point_m| wall.frame.to_space(point_m)))
+}
+
+fn two_sided(mesh: &Mesh) -> Surface {
+    let vertices_m: Vec<[f64; 3]> = mesh.corners_m().flatten().collect();
+    let triangles: Vec<[u32; 3]> = (0..vertices_m.len() as u32 / 3)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+        .collect();
+    Surface::mesh(&vertices_m, &triangles)
+}
+
+/// A solid of finite size in its own frame.
+fn solid(shape: &Shape) -> Option<Surface> {
+    match shape {
+        Shape::Box(solid) => Some(Surface::solid_box(&solid.bounds())),
+        Shape::Cylinder(pin) => Some(Surface::cylinder(pin.ends_m(), pin.radius_m())),
+        Shape::Plane(_) | Shape::Mesh(_) => None,
+    }
 }
 
 /// The colour of each cluster.

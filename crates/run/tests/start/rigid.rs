@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use dem_engine::step::step;
-use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::law::Law;
+use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_plan::Plan;
 

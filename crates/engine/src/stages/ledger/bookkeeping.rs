@@ -26,9 +26,8 @@ use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
 use crate::state::walls::{Wall, WallLoad};
-use dem_physics::contact::law::{ContactKind, Law};
+use dem_physics::contact::law::ContactKind;
 use dem_results::Balance;
-use std::f64::consts::PI;
 
 /// The ledgers of energy and momentum.
 pub(crate) const LEDGER: Stage = Stage::new("energy balance", |_, _| {
@@ -73,10 +72,7 @@ fn attraction_at_rest_j(state: &State) -> f64 {
     ordered_sum(poses.len(), |i| {
         let radius_m = poses[i].radius_m();
         let of_kind = |kind: &&ContactKind| {
-            let adhesion_n = match &kind.law {
-                Law::DerjaguinMullerToporov(law) => 2.0 * PI * law.work_of_adhesion_j_m2 * radius_m,
-                Law::HertzMindlin(_) | Law::Linear(_) => 0.0,
-            };
+            let adhesion_n = kind.law.at_impact().largest_attraction_n(radius_m);
             let bridge_n = kind.bridge.map_or(0.0, |bridge| bridge.largest_n(radius_m));
             let attraction_n = adhesion_n + bridge_n;
             // The overlap at rest, by the growth of Hertz's force from a small one.

@@ -20,7 +20,7 @@ use crate::state::clusters::{Cluster, Clusters};
 use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::population::OutletWatch;
-use crate::state::renumbered::{NewNumbers, Renumbered};
+use crate::state::renumbered::NewNumbers;
 use crate::state::walls::Wall;
 use dem_physics::bond::scatter::{body_key, strength_factor};
 use dem_physics::rotation::rotation;
@@ -376,21 +376,15 @@ fn count_anew(
     old_radii_m: &[f64],
     materials_of_new: &[Option<u8>],
 ) {
+    let threads = state.scratch.threads;
+    let (poses, parts) = state.naming_particles();
     let by = NewNumbers {
         now,
         old_radii_m,
-        poses: &state.particles.poses,
+        poses,
         materials_of_new,
-        threads: state.scratch.threads,
+        threads,
     };
-    let parts: [&mut dyn Renumbered; 6] = [
-        &mut state.supports,
-        &mut state.loads,
-        &mut state.rigid_parts,
-        &mut state.walls,
-        &mut state.bridges,
-        &mut state.contacts,
-    ];
     for part in parts {
         part.renumber(&by);
     }

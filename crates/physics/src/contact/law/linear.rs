@@ -1,16 +1,16 @@
 //! The linear contact law: springs and dashpots of constant stiffness.
 //!
 //! F_n = k_n d, k_t a constant fraction of k_n, c = 2 zeta sqrt(k m*) along the normal with k_n,
-//! across it with k_t, and the [ratio zeta](super::restitution) that gives the required restitution
+//! across it with k_t, and the [ratio zeta](crate::contact::restitution) that gives the required restitution
 //! at any speed (Cundall and Strack 1979; Schwager and Poeschel 2007).
 //!
 //! The dashpot acts with its full force from the first moment, while the kick of a step covers the
 //! time around its end. So that the loss does not depend on the moment within a step at which the
 //! ends meet, the first kick contains only the fraction of the dashpot's force since then.
 
-use super::kinematics::ContactKinematics;
-use super::normal::{ImpactLaw, NormalLaw, NormalResponse};
-use super::pair_parameters::{PairInput, PairParameters};
+use crate::contact::kinematics::ContactKinematics;
+use crate::contact::normal::{ImpactLaw, NormalLaw, NormalResponse};
+use crate::contact::pair_parameters::{PairInput, PairParameters};
 use crate::number::Number;
 use serde::Serialize;
 
@@ -126,5 +126,9 @@ impl ImpactLaw for Linear {
 
     fn overlap_at_impact_m(&self, _effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64 {
         speed_m_s * (mass_kg / self.normal_n_m).sqrt()
+    }
+
+    fn largest_attraction_n(&self, _effective_radius_m: f64) -> f64 {
+        0.0
     }
 }

@@ -11,9 +11,9 @@
 //! distance of atoms, about 0.3 nm, is well below 1. The attraction before the touch is left out.
 
 use super::hertz_mindlin::HertzMindlin;
-use super::kinematics::ContactKinematics;
-use super::normal::{ImpactLaw, NormalLaw, NormalResponse};
-use super::pair_parameters::PairParameters;
+use crate::contact::kinematics::ContactKinematics;
+use crate::contact::normal::{ImpactLaw, NormalLaw, NormalResponse};
+use crate::contact::pair_parameters::PairParameters;
 use crate::number::Number;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -99,8 +99,12 @@ impl ImpactLaw for DerjaguinMullerToporov {
     fn overlap_at_impact_m(&self, effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64 {
         let law = &self.hertz_mindlin;
         let k = 4.0 / 3.0 * law.young_modulus_pa * effective_radius_m.sqrt();
-        let attraction_n = 2.0 * PI * self.work_of_adhesion_j_m2 * effective_radius_m;
+        let attraction_n = self.largest_attraction_n(effective_radius_m);
         let pulled_m = (2.5 * attraction_n / k).powf(2.0 / 3.0);
         law.overlap_at_impact_m(effective_radius_m, mass_kg, speed_m_s) + pulled_m
+    }
+
+    fn largest_attraction_n(&self, effective_radius_m: f64) -> f64 {
+        2.0 * PI * self.work_of_adhesion_j_m2 * effective_radius_m
     }
 }

@@ -6,11 +6,11 @@
 //! - F_n = 4/3 E* sqrt(R*) d^(3/2), tangent stiffness S_n = 2 E* sqrt(R* d) (Hertz 1882);
 //! - k_t = 8 G* sqrt(R* d) (Mindlin 1949, no slip);
 //! - c = 2 sqrt(5/6) zeta sqrt(S m*) along the normal with S_n, across it with k_t (Tsuji et al.
-//!   1992), and the [ratio zeta](super::restitution) that gives the required restitution.
+//!   1992), and the [ratio zeta](crate::contact::restitution) that gives the required restitution.
 
-use super::kinematics::ContactKinematics;
-use super::normal::{ImpactLaw, NormalLaw, NormalResponse};
-use super::pair_parameters::{Elastic, PairInput, PairParameters};
+use crate::contact::kinematics::ContactKinematics;
+use crate::contact::normal::{ImpactLaw, NormalLaw, NormalResponse};
+use crate::contact::pair_parameters::{Elastic, PairInput, PairParameters};
 use crate::number::Number;
 use serde::Serialize;
 
@@ -127,5 +127,9 @@ impl ImpactLaw for HertzMindlin {
     fn overlap_at_impact_m(&self, effective_radius_m: f64, mass_kg: f64, speed_m_s: f64) -> f64 {
         let k = 4.0 / 3.0 * self.young_modulus_pa * effective_radius_m.sqrt();
         (1.25 * mass_kg * speed_m_s * speed_m_s / k).powf(0.4)
+    }
+
+    fn largest_attraction_n(&self, _effective_radius_m: f64) -> f64 {
+        0.0
     }
 }
