@@ -57,9 +57,9 @@ fn moments(folder: &ResultsFolder) -> Vec<(f64, Vec<Row>)> {
 }
 
 /// Id, parent, creation time, end time, particles.
-type TreeRow = (u32, Option<u32>, f64, Option<f64>, u32);
+type ReadRow = (u32, Option<u32>, f64, Option<f64>, u32);
 
-fn tree(folder: &ResultsFolder) -> Vec<TreeRow> {
+fn tree(folder: &ResultsFolder) -> Vec<ReadRow> {
     let (header, rows) = table(&folder.file(names::FRAGMENT_TREE));
     assert_eq!(header.join(","), first_line(&TreeRow::COLUMNS));
     let known = |text: &str| (!text.is_empty()).then(|| text.to_owned());
@@ -77,8 +77,8 @@ fn tree(folder: &ResultsFolder) -> Vec<TreeRow> {
 }
 
 /// Number of fragments in the tree at a time.
-fn count_at(tree: &[TreeRow], time_s: f64) -> u64 {
-    let lives = |row: &&TreeRow| row.2 <= time_s && row.3.is_none_or(|ended_s| ended_s > time_s);
+fn count_at(tree: &[ReadRow], time_s: f64) -> u64 {
+    let lives = |row: &&ReadRow| row.2 <= time_s && row.3.is_none_or(|ended_s| ended_s > time_s);
     tree.iter().filter(lives).count() as u64
 }
 
@@ -164,7 +164,7 @@ fn fragments_are_written_at_frames_and_whenever_they_have_become_many_more() {
 fn the_tree_tells_who_broke_off_whom() {
     let (_parent, folder, summary) = burst();
     let tree = tree(&folder);
-    let mut children: BTreeMap<u32, Vec<&TreeRow>> = BTreeMap::new();
+    let mut children: BTreeMap<u32, Vec<&ReadRow>> = BTreeMap::new();
     for row in &tree {
         if let Some(parent) = row.1 {
             children.entry(parent).or_default().push(row);
