@@ -6,7 +6,7 @@ use std::fs;
 use dem_engine::state::clusters::{Cluster, Split};
 use dem_results::columns::header as first_line;
 use dem_results::folder::names;
-use dem_results::{Existing, FragmentRow, ResultsFolder, TreeRow, read_series};
+use dem_results::{Existing, FragmentRow, ResultsFolder, read_series};
 use dem_runner::outputs::event_table::split_text;
 use nalgebra::Vector3;
 
@@ -61,7 +61,7 @@ type ReadRow = (u32, Option<u32>, f64, Option<f64>, u32);
 
 fn tree(folder: &ResultsFolder) -> Vec<ReadRow> {
     let (header, rows) = table(&folder.file(names::FRAGMENT_TREE));
-    assert_eq!(header.join(","), first_line(&TreeRow::COLUMNS));
+    assert_eq!(header.join(","), first_line(&dem_results::TreeRow::COLUMNS));
     let known = |text: &str| (!text.is_empty()).then(|| text.to_owned());
     rows.into_iter()
         .map(|row| {
