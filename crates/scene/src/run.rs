@@ -69,8 +69,6 @@ plain_table! {
             .within(Included(0.0), Excluded(1.0))
             .remedy("write 0 for none")
             .or(0.0);
-        /// A line about the run; it has no effect.
-        comment: Option<String> = text("comment", "text").otherwise("none");
         /// Seed of all random numbers: scattered strengths, inlets.
         seed: u64 = new("seed", Kind::Whole { least: 0, most: Some(u64::MAX), of: "" })
             .remedy("write any such number")

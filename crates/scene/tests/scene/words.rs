@@ -18,7 +18,6 @@ run.safety_factor               0.9
 run.adaptive                    false
 run.gravity                     [0, 0, 0] m/s2
 run.local_damping               0
-run.comment                     none
 run.seed                        0
 run.initial_overlap             refuse
 materials.clay.density          from the body, where one needs it
