@@ -29,7 +29,6 @@ mod statics;
 mod stress;
 mod sweep;
 mod trial;
-mod version_info;
 
 use std::ffi::OsString;
 use std::sync::Arc;
@@ -104,7 +103,6 @@ pub fn run(
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
         Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
-        Some(Command::VersionInfo) => version_info::print_versions(),
         Some(Command::Man) => print_man_page(Arguments::command()),
         None if arguments.run.scene.names_a_scene() => {
             in_pool(arguments.run.scene.threads, |threads| {

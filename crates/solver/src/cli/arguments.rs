@@ -187,8 +187,6 @@ pub(super) enum Command {
     #[command(after_help = "Exit code 0 if all cases behave as predicted, else 1.\n\
                       Example:\n  dem-run stress spin mass-ratio")]
     Stress(StressArguments),
-    /// Print the versions of the program and of the scenes and checkpoints that it reads
-    VersionInfo,
     /// Print a script that completes dem-run's options in a shell
     Completions {
         /// Which shell

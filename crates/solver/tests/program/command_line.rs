@@ -167,13 +167,3 @@ fn colours_stay_out_of_pipes() {
         plain.replace("error:", "\u{1b}[1m\u{1b}[31merror:\u{1b}[0m")
     );
 }
-
-#[test]
-fn version_info_names_program_and_formats() {
-    let text = said(&["version-info"]);
-    let first: Vec<&str> = text
-        .lines()
-        .filter_map(|line| line.split(' ').next())
-        .collect();
-    assert_eq!(first, ["dem-run", "scenes", "checkpoints"]);
-}
