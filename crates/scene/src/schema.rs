@@ -340,7 +340,8 @@ impl Key {
 
 /// Declares the schema of a table: its sentence as a comment, its title, then an entry for each key
 /// with its sentence as a comment. An entry is `kind("key", ...)`, with a constructor of [`Key`]
-/// without its sentence; or, without a comment, a constant or a constructor that gives the sentence.
+/// without its sentence; or, without a comment, a constant or a constructor that gives the
+/// sentence.
 macro_rules! table_schema {
     (
         $(#[doc = $about:literal])+

@@ -46,7 +46,7 @@ pub struct Scratch {
     pub(crate) joints: JointBuffers,
     /// What touches each sphere that a clump carries. All are cleared between steps.
     pub clump_touches: Vec<ClumpTouch>,
-    /// Power that each clump takes in, W: see `stages/intake.rs`.
+    /// Power that each clump takes in, W: see `stages/population/absorbed_energy.rs`.
     pub powers_w: Vec<Option<f64>>,
     /// Damaged bonds that have reached their compressive strength.
     pub(crate) crushed: Vec<u32>,

@@ -1,6 +1,6 @@
-//! What bonds have been through, as files of bodies and frames hold it: histories in the axes of the
-//! scene, directions without load in the axes of the particles before they turned; each from the
-//! particle with the smaller number in the file to the one with the larger.
+//! What bonds have been through, as files of bodies and frames hold it: histories in the axes of
+//! the scene, directions without load in the axes of the particles before they turned; each from
+//! the particle with the smaller number in the file to the one with the larger.
 
 use dem_io::body::{Body, BondColumn};
 use dem_io::{Diagnostic, Result};

@@ -3,8 +3,9 @@
 //! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`
 //! and, of a strained body, `rotation_rad`, cell data `bond_radius_m`, `initial_length_m` and, if
 //! bonds are damaged, `damage`, `initial_direction` if they are sheared or bent, and the columns of
-//! [`super::histories`] of what they have been through; field data: `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
-//! encoding see [`crate::vtk`].
+//! [`super::histories`] of what they have been through; field data: `body_format_version`,
+//! `length_unit` and one array for each known field of [`About`]. For the encoding see
+//! [`crate::vtk`].
 
 mod names;
 mod read;

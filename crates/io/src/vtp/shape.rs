@@ -61,7 +61,7 @@ pub enum Shape {
 /// Largest possible number of values of an array; `shape`: None if it is not used.
 pub(super) fn most_values(shape: Option<Shape>, counts: &Counts) -> u64 {
     const OF_OTHER: u64 = 1 << 16;
-    const OF_OTHER_PER_CELL: u64 = 1 << 10;
+    const OF_OTHER_PER_POINT: u64 = 1 << 10;
     /// Elements of a flat joint, and vectors of them.
     const OF_TUPLE: u64 = 30_000;
     match shape {
@@ -72,9 +72,9 @@ pub(super) fn most_values(shape: Option<Shape>, counts: &Counts) -> u64 {
         Some(Shape::Tuples) => counts.cells().saturating_mul(OF_TUPLE),
         Some(Shape::Field(most)) => most,
         Some(Shape::Any) | None => {
-            let all = counts.points.saturating_add(counts.cells());
-            all.saturating_mul(OF_OTHER_PER_CELL)
-                .saturating_add(OF_OTHER)
+            let of_points = counts.points.saturating_mul(OF_OTHER_PER_POINT);
+            let of_cells = counts.cells().saturating_mul(OF_TUPLE);
+            of_points.saturating_add(of_cells).saturating_add(OF_OTHER)
         }
     }
 }

@@ -76,10 +76,10 @@ pub struct EndMotion {
     pub spin_rad_s: Vector3<f64>,
 }
 
-/// Damping of one bond or several at once, with the vector `apart` from the first end to the second,
-/// m, and ends of these velocities, m/s, and spins, rad/s: force on the second end, N, and torques
-/// on both, N m. The contact point divides the length in the same ratio as the `levers_m` divide the
-/// initial one.
+/// Damping of one bond or several at once, with the vector `apart` from the first end to the
+/// second, m, and ends of these velocities, m/s, and spins, rad/s: force on the second end, N, and
+/// torques on both, N m. The contact point divides the length in the same ratio as the `levers_m`
+/// divide the initial one.
 ///
 /// Damping exerts no net moment on the bond, gives no force while it moves as a rigid body, and
 /// never adds energy.

@@ -214,6 +214,27 @@ fn all_arrays_are_read_with_their_kinds() {
     );
 }
 
+/// Flat joints may have 10,000 elements and more.
+#[test]
+fn an_array_of_many_numbers_for_each_bond_is_read() {
+    let (bonds, elements) = (10_i32, 20_000_i32);
+    let failed: Vec<f64> = (0..bonds * elements).map(|n| f64::from(n % 2)).collect();
+    let frame = Frame {
+        bonds: bonds as usize,
+        ends: &|bond| BONDS[bond % 2],
+        bond_arrays: &[NamedArray {
+            name: "failed_elements",
+            values: Values::Flags(elements as usize, &failed),
+        }],
+        ..frame(0.0)
+    };
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("frame.vtp");
+    fs::write(&path, bytes_of(&frame)).unwrap();
+    let arrays = read_all_arrays(&path).unwrap();
+    assert_eq!(arrays.get("CellData/failed_elements").unwrap(), failed);
+}
+
 #[test]
 fn the_reader_of_bodies_reads_a_frame() {
     let body = vtp::read(&mut bytes_of(&frame(0.5)).as_slice()).unwrap();

@@ -1,5 +1,5 @@
 //! Forces of damped bonds on the particles: viscous, and those of structural damping, which a
-//! viscous force stands for in each step (`stages/structural.rs`).
+//! viscous force stands for in each step (`structural_damping.rs`).
 //!
 //! Velocities are known half a step before the forces (leapfrog). The kick is therefore split
 //! (Strang 1968): half of it by all other forces F, then the decay of velocities by damping alone

@@ -1,8 +1,8 @@
 //! The linear contact law: springs and dashpots of constant stiffness.
 //!
 //! F_n = k_n d, k_t a constant fraction of k_n, c = 2 zeta sqrt(k m*) along the normal with k_n,
-//! across it with k_t, and the [ratio zeta](crate::contact::restitution) that gives the required restitution
-//! at any speed (Cundall and Strack 1979; Schwager and Poeschel 2007).
+//! across it with k_t, and the [ratio zeta](crate::contact::restitution) that gives the required
+//! restitution at any speed (Cundall and Strack 1979; Schwager and Poeschel 2007).
 //!
 //! The dashpot acts with its full force from the first moment, while the kick of a step covers the
 //! time around its end. So that the loss does not depend on the moment within a step at which the
