@@ -1,5 +1,5 @@
-//! Helpers shared by the tests: solids, lattices of spheres, and an independent check of packings with
-//! its own geometry.
+//! Helpers shared by the tests: solids, lattices of spheres, and an independent check of
+//! packings with its own geometry.
 
 pub(crate) mod exact;
 pub(crate) mod facets;
