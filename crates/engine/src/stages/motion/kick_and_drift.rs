@@ -78,7 +78,7 @@ pub struct Forces<'a> {
 }
 
 impl<'a> Forces<'a> {
-    /// All forces on particles, with these resisting ones: see [`State::resistances`].
+    /// All forces on particles, with these resisting ones: see `State::resistances`.
     pub fn of(
         particles: &'a Particles,
         resisting: [&'a [Wrench]; 2],
