@@ -252,6 +252,7 @@ fn a_disc_is_in_equilibrium_if_it_is_seated_on_its_bars() {
     let scene = scene_of_data("hopkinson-disc.toml");
     let run = |name: &str, options: &[&str]| -> Value {
         let end = [
+            "--quiet",
             "--json",
             "--output",
             name,
