@@ -34,12 +34,15 @@ impl Names {
         }
     }
 
-    /// A formatted text: an item ends with the first brace at the margin.
+    /// A formatted text: an item, which a macro may indent, ends with the first brace below its
+    /// first letter.
     fn add_types(&mut self, text: &str) {
         let mut lines = text.lines();
         while let Some(line) = lines.next() {
-            if let Some(name) = type_of(line) {
-                let body = lines.by_ref().take_while(|line| *line != "}");
+            let item = line.trim_start();
+            if let Some(name) = type_of(item) {
+                let end = format!("{}}}", &line[..line.len() - item.len()]);
+                let body = lines.by_ref().take_while(|line| *line != end);
                 let members = body.flat_map(|line| words(line.split("//").next().unwrap()));
                 self.of_type.entry(name).or_default().extend(members);
             }
