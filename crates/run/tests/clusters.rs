@@ -5,7 +5,8 @@ mod fragments;
 
 use std::sync::Arc;
 
-use dem_engine::state::bonds::{BondLaw, BondRule, Bonds};
+use crate::bars::ELASTIC;
+use dem_engine::state::bonds::Bonds;
 use dem_physics::bond::stiffness::Stiffness;
 
 /// Bonds between these particles.
@@ -18,15 +19,7 @@ pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
     sorted.sort_unstable();
     sorted.dedup();
     let mut bonds = Bonds {
-        rules: Arc::new([BondRule {
-            law: BondLaw::Elastic,
-            damped: false,
-            structural_damping: 0.0,
-            criteria: None,
-            strengthening_from_1_s: None,
-            strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
-            contact_beside: false,
-        }]),
+        rules: Arc::new([ELASTIC]),
         ..Bonds::default()
     };
     let stiffness = Stiffness {

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use dem_engine::stages::bonds::forces::bond_wrenches;
-use dem_engine::stages::bonds::forces::bond_wrenches_one_by_one;
-use dem_engine::state::bonds::Bonds;
-use dem_engine::state::bonds::{BondLaw, BondRule};
+use crate::bars::ELASTIC;
+use dem_engine::stages::bonds::forces::{bond_wrenches, bond_wrenches_one_by_one};
+use dem_engine::state::bonds::{BondRule, Bonds};
 use dem_engine::state::particles::Particles;
 use dem_engine::state::partitions::divide;
 use dem_physics::bond::failure::{Criteria, EquivalentStress, Factors, stresses, utilisation};
@@ -34,13 +33,8 @@ fn chain(criteria: Criteria, is_scattered: bool) -> (Particles, Bonds) {
     }
     let mut bonds = Bonds {
         rules: Arc::new([BondRule {
-            law: BondLaw::Elastic,
-            damped: false,
-            structural_damping: 0.0,
             criteria: Some(criteria),
-            strengthening_from_1_s: None,
-            strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
-            contact_beside: false,
+            ..ELASTIC
         }]),
         ..Bonds::default()
     };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use std::f64::consts::PI;
 
-use crate::bars::law;
+use crate::bars::{ELASTIC, law};
 use dem_engine::check::limit::limit;
 use dem_engine::state::State;
 use dem_engine::state::bonds::{BondRule, Bonds};
@@ -102,12 +102,8 @@ pub(crate) fn bonded(
     let mut bonds = Bonds {
         rules: Arc::new([BondRule {
             law: law(incremental),
-            damped: false,
-            structural_damping: 0.0,
             criteria: Some(criteria),
-            strengthening_from_1_s: None,
-            strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
-            contact_beside: false,
+            ..ELASTIC
         }]),
         ..Bonds::default()
     };
