@@ -135,15 +135,15 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
     let mut watches = state.watches.iter();
     let mut values = Vec::new();
     for probe in probes {
-        let recorded = probe.measurement().recorded;
-        let watch = recorded.and_then(|_| watches.next());
+        let measurement = probe.measurement();
+        let watch = measurement.recorded.and_then(|_| watches.next());
         let value = match watch {
             Some(watch) => {
                 probe.history = watch.seen.history;
                 watch.seen.value
             }
             None => {
-                let value = (probe.measurement().read)(probe, &view);
+                let value = (measurement.read)(probe, &view);
                 probe.history.note(state.time_s, value);
                 if let Some(error) = probe.mixing(state).and_then(|mixture| mixture.error()) {
                     probe.history.note_error(error);

@@ -1,4 +1,4 @@
 //! Clusters in the time step: the pieces into which they break.
 
-pub mod bytes;
+pub(crate) mod bytes;
 pub mod pieces;

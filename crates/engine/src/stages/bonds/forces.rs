@@ -69,7 +69,7 @@ pub(super) fn bonds_to_come(state: &State) -> usize {
 }
 
 /// Whether there are bonds, or can be later, and a rule meets the condition.
-pub fn any_bond(state: &State, is_so: impl Fn(&BondRule) -> bool) -> bool {
+pub(crate) fn any_bond(state: &State, is_so: impl Fn(&BondRule) -> bool) -> bool {
     state.bonds.len() + bonds_to_come(state) > 0 && state.bonds.rules.iter().any(is_so)
 }
 

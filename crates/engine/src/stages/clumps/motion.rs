@@ -79,7 +79,7 @@ pub(crate) fn drift_clumps(state: &mut State) -> usize {
 }
 
 /// Number of clumps that are awake.
-pub fn awake(clumps: &Clumps) -> usize {
+pub(crate) fn awake(clumps: &Clumps) -> usize {
     clumps.all.iter().filter(|clump| !clump.asleep).count()
 }
 
@@ -156,7 +156,7 @@ impl<'a> Bits<'a> {
 }
 
 /// Centre of a sphere of a clump that has this rotation, m.
-pub fn place_of(
+pub(crate) fn place_of(
     template: &Template,
     sphere: usize,
     clump: &Clump,
@@ -297,7 +297,12 @@ pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
 }
 
 /// As [`kick`], for one clump, awake or not.
-pub fn kick_one(clump: &mut Clump, template: &Template, gravity_m_s2: [f64; 3], kick_s: f64) {
+pub(crate) fn kick_one(
+    clump: &mut Clump,
+    template: &Template,
+    gravity_m_s2: [f64; 3],
+    kick_s: f64,
+) {
     let per_mass = kick_s / template.mass_kg;
     for (k, gravity) in gravity_m_s2.iter().enumerate() {
         clump.velocity_m_s[k] += per_mass * clump.force_n[k] + kick_s * gravity;

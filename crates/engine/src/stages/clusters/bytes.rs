@@ -4,7 +4,7 @@ use crate::state::State;
 
 /// A stage that may need the cluster data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ClusterUser {
+pub(crate) enum ClusterUser {
     /// The search for fragments.
     Fragments,
     /// The search for contacts.
@@ -18,7 +18,7 @@ pub enum ClusterUser {
 /// Bytes of the cluster data, if they belong to this stage: to the search for fragments if bonds
 /// can break; otherwise to the contacts, which need to tell bodies apart; otherwise to clumps, or
 /// to measures that count fragments.
-pub fn clusters_bytes(state: &State, stage: ClusterUser) -> usize {
+pub(crate) fn clusters_bytes(state: &State, stage: ClusterUser) -> usize {
     let breaks = (state.bonds.rules.iter()).any(|rule| rule.criteria.is_some());
     let owner = match (breaks, &state.contacts) {
         (true, _) => ClusterUser::Fragments,

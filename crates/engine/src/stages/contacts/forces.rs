@@ -6,7 +6,7 @@ mod input;
 mod kernel;
 mod stored;
 
-pub use self::beside::list_within;
+pub(crate) use self::beside::list_within;
 pub(crate) use self::stored::pairs_adhesion_j;
 pub use self::stored::{
     contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n, touch_point_m,
@@ -215,7 +215,7 @@ pub fn list_contacts(
 
 /// Finds the mean radius of the particles. The sum of the first `known` is the one that was found
 /// last.
-pub fn find_mean_radius(contacts: &mut Contacts, particles: &Particles, known: usize) {
+pub(crate) fn find_mean_radius(contacts: &mut Contacts, particles: &Particles, known: usize) {
     let radii_m = &mut contacts.scratch.radii_m;
     if known == 0 {
         *radii_m = 0.0;
@@ -226,7 +226,7 @@ pub fn find_mean_radius(contacts: &mut Contacts, particles: &Particles, known: u
 }
 
 /// Replaces the list of pairs, and divides the work anew.
-pub fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, state: &State) {
+pub(crate) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, state: &State) {
     let poses = &state.particles.poses;
     let relaxes = contacts.model.relaxes;
     let clusters = state.clusters.as_ref();
@@ -340,7 +340,7 @@ impl StepInput<'_> {
 
 /// One history for each lane.
 #[inline(always)]
-pub fn stored_contact<'a, T: Lanes, R: RollingFriction<T>>(
+pub(crate) fn stored_contact<'a, T: Lanes, R: RollingFriction<T>>(
     proof: T::Proof,
     history: impl Fn(usize) -> &'a ContactHistory,
 ) -> StoredContact<T> {
@@ -372,7 +372,7 @@ pub fn stored_contact<'a, T: Lanes, R: RollingFriction<T>>(
 
 /// One particle for each lane, and its centre, m.
 #[inline(always)]
-pub fn contact_sphere<T: Lanes>(
+pub(crate) fn contact_sphere<T: Lanes>(
     proof: T::Proof,
     (poses, motions): (&[Pose], &[Motion]),
     particle: impl Fn(usize) -> usize,

@@ -69,7 +69,7 @@ pub(crate) fn drift_particles(state: &mut State) -> usize {
 }
 
 /// What changes the velocities of particles over the time `kick_s`.
-pub struct Forces<'a> {
+pub(crate) struct Forces<'a> {
     wrenches: &'a [Wrench],
     /// Each with one for each particle, or empty.
     resisting: [&'a [Wrench]; 2],
@@ -78,8 +78,8 @@ pub struct Forces<'a> {
 }
 
 impl<'a> Forces<'a> {
-    /// All forces on particles, with these resisting ones: see `State::resistances`.
-    pub fn of(
+    /// All forces on particles, with these resisting ones: see [`State::resistances`].
+    pub(crate) fn of(
         particles: &'a Particles,
         resisting: [&'a [Wrench]; 2],
         gravity_m_s2: [f64; 3],
@@ -97,7 +97,7 @@ impl<'a> Forces<'a> {
 impl Forces<'_> {
     /// Changes the velocities of particle `i`, which have been these.
     #[inline(always)]
-    pub fn kick(&self, i: usize, motion: &mut Motion) {
+    pub(crate) fn kick(&self, i: usize, motion: &mut Motion) {
         let per_mass = self.kick_s * motion.inverse_mass;
         let per_inertia = self.kick_s * motion.inverse_inertia;
         let wrench = &self.wrenches[i];
@@ -117,7 +117,7 @@ impl Forces<'_> {
 
 /// Changes those of a chunk, from number `first` on, that are awake.
 #[inline(always)]
-pub fn for_each_awake<T>(
+pub(crate) fn for_each_awake<T>(
     first: usize,
     some: &mut [T],
     asleep: &Asleep,

@@ -160,7 +160,7 @@ impl Moving<'_> {
 /// Sets held degrees of freedom of predicted motions to what the support prescribes at the time of
 /// the poses; those that it lets go of now had their velocity until now.
 /// Those at the end of a bar move together, and the bar acts on them for `bar_s`.
-pub fn predict_held(state: &State, bar_s: f64, predicted: &mut [Motion]) {
+pub(crate) fn predict_held(state: &State, bar_s: f64, predicted: &mut [Motion]) {
     let steps_s = state.steps_s();
     for support in &state.supports {
         let phase = support.phase(state.time_s, steps_s);

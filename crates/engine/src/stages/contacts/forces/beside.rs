@@ -13,7 +13,7 @@ use crate::state::contacts::{Beside, Contacts};
 /// Lists the pairs within pieces among all pairs: those with a contact beside their bond, and those
 /// that no bond joins. `pairs` are those of different pieces, or still known from an earlier
 /// search; sorted.
-pub fn list_within(state: &State, contacts: &mut Contacts, pairs: &mut Vec<[u32; 2]>) {
+pub(crate) fn list_within(state: &State, contacts: &mut Contacts, pairs: &mut Vec<[u32; 2]>) {
     let scratch = &mut contacts.scratch;
     scratch.self_contacts.is_changed = false;
     scratch.beside.clear();
