@@ -31,8 +31,8 @@ pub use block::{BLOCK, BondBlock, Column};
 pub use histories::Histories;
 use histories::NewBond;
 pub use law::{BondLaw, BondRule};
-pub(crate) use stored::StoredBond;
 use stored::frame_between;
+pub(crate) use stored::{StoredBond, sign};
 
 impl BondBlock {
     /// Copies of these bonds.

@@ -7,15 +7,14 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::PlacedBody;
-use super::bonds::{Bonds, Histories, StoredBond};
+use super::bonds::{Bonds, Histories, StoredBond, sign};
 use super::particles::Pose;
 use dem_physics::rotation::numbers;
 
 /// Direction of bond `at` without load. `is_reversed`: its particles have the opposite order in the
 /// file.
 pub fn direction_of(bonds: &Bonds, at: usize, is_reversed: bool) -> [f64; 3] {
-    let sign = if is_reversed { -1.0 } else { 1.0 };
-    (sign * bonds.direction(at)).into()
+    (sign(is_reversed) * bonds.direction(at)).into()
 }
 
 /// The histories of these bonds as the columns of a file; none if no rule has a law with a history.
@@ -93,8 +92,8 @@ pub fn restore(
         let [a, _] = body.bonds[original];
         let is_reversed = placed.particles[a as usize] != bonds.ends[at][0];
         if let Some(direction) = body.bond_directions.get(original) {
-            let sign = if is_reversed { -1.0 } else { 1.0 };
-            bonds.set_direction(at, &(sign * Vector3::from(*direction).normalize()));
+            let direction = Vector3::from(*direction).normalize();
+            bonds.set_direction(at, &(sign(is_reversed) * direction));
             let bond = stored_bond(bonds, at, poses, rotation, is_reversed);
             bonds.histories.set_direction(at, &bond);
         }

@@ -27,7 +27,7 @@ pub(crate) struct StoredBond {
 
 impl StoredBond {
     pub(super) fn sign(&self) -> f64 {
-        if self.is_reversed { -1.0 } else { 1.0 }
+        sign(self.is_reversed)
     }
 
     /// Two values in the order of the other end of the bond.
@@ -49,6 +49,11 @@ impl StoredBond {
     pub(super) fn stored(&self, own: [f64; 3]) -> [f64; 3] {
         (self.sign() * (self.frame * Vector3::from(own))).into()
     }
+}
+
+/// Sign of a vector along a bond whose particles may have the opposite order in the file.
+pub(crate) fn sign(is_reversed: bool) -> f64 {
+    if is_reversed { -1.0 } else { 1.0 }
 }
 
 /// Rotation of the frame of a bond between these ends: halfway between those of the two.
