@@ -61,20 +61,22 @@ pub enum Shape {
 /// Largest possible number of values of an array; `shape`: None if it is not used.
 pub(super) fn most_values(shape: Option<Shape>, counts: &Counts) -> u64 {
     const OF_OTHER: u64 = 1 << 16;
-    const OF_OTHER_PER_POINT: u64 = 1 << 10;
+    const OF_OTHER_PER_CELL: u64 = 1 << 10;
     /// Elements of a flat joint, and vectors of them.
     const OF_TUPLE: u64 = 30_000;
+    let of_tuples = counts.cells().saturating_mul(OF_TUPLE);
+    let all = counts.points.saturating_add(counts.cells());
+    let of_other = all
+        .saturating_mul(OF_OTHER_PER_CELL)
+        .saturating_add(OF_OTHER);
     match shape {
         Some(Shape::Each(of, numbers, _)) => {
             let count = counts.parts(of).into_iter().fold(0, u64::saturating_add);
             count.saturating_mul(numbers)
         }
-        Some(Shape::Tuples) => counts.cells().saturating_mul(OF_TUPLE),
+        Some(Shape::Tuples) => of_tuples,
         Some(Shape::Field(most)) => most,
-        Some(Shape::Any) | None => {
-            let of_points = counts.points.saturating_mul(OF_OTHER_PER_POINT);
-            let of_cells = counts.cells().saturating_mul(OF_TUPLE);
-            of_points.saturating_add(of_cells).saturating_add(OF_OTHER)
-        }
+        Some(Shape::Any) => of_other.saturating_add(of_tuples),
+        None => of_other,
     }
 }
