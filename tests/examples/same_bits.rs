@@ -24,8 +24,8 @@ use serde_json::Value;
 /// Scenes of data/scenes, and their settings.
 const SCENES: [(&str, &[&str]); 14] = [
     ("cantilever", &["run.end_time=\"0.1 s\""]),
-    ("chute", &["run.end_time=\"0.5 s\""]),
-    ("chute-back", &["run.end_time=\"0.9 s\""]),
+    ("chute", &["run.end_time=\"0.9 s\""]),
+    ("chute-region", &["run.end_time=\"0.5 s\""]),
     ("chute-bonded", &["run.end_time=\"0.3 s\""]),
     ("clamped", &[SAMPLE]),
     ("clamped", &[SAMPLE, "run.adaptive=true"]),

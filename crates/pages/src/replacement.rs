@@ -10,10 +10,10 @@ use crate::table::{Table, write};
 
 const WAYS: [(&str, &str); 3] = [
     ("chute-bonded", "breakable from the start"),
-    ("chute", "clumps until they come to the plate"),
-    ("chute-back", "quiet fragments restored"),
+    ("chute-region", "in a region around the plate"),
+    ("chute", "from the first touch until no bond breaks"),
 ];
-const SEEDS: usize = 4;
+const SEEDS: usize = 8;
 
 /// The recorded data of a run.
 struct Run {
@@ -31,12 +31,12 @@ pub(crate) fn tables() -> [Table; 3] {
         bond updates skipped | fragments discharged | mass discharged";
     let of_masses = "distance of the masses (KS) | by number | by mass";
     let ways = WAYS.map(|(name, what)| format!("`{name}.toml`: {what}"));
-    let [bonded, chute, back] = WAYS.map(|(name, _)| format!("`{name}.toml`"));
-    let mut pairs = [&bonded, &chute, &back]
+    let [bonded, region, touch] = WAYS.map(|(name, _)| format!("`{name}.toml`"));
+    let mut pairs = [&bonded, &region, &touch]
         .map(|way| format!("two seeds of {way}"))
         .to_vec();
-    pairs.extend([&chute, &back].map(|way| format!("{way} and {bonded}")));
-    pairs.extend([&chute, &back].map(|way| format!("{way}, all seeds together")));
+    pairs.extend([&region, &touch].map(|way| format!("{way} and {bonded}")));
+    pairs.extend([&region, &touch].map(|way| format!("{way}, all seeds together")));
     let page = "doc/replacement.md";
     [
         Table::new("README.md", WORDS, of_times, ways.clone()),

@@ -24,6 +24,7 @@ mod questions;
 mod rules;
 mod stages;
 pub mod time_step;
+mod triggers;
 mod unfinished;
 mod walls;
 mod zones;

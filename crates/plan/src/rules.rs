@@ -11,18 +11,17 @@ use dem_scene::{FeedRate, Region as SceneRegion, Scene, SharesBy, StartAs};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::daughters::{compliances, daughter_rules};
+use super::triggers::{
+    is_in_outlet, refuse_restless, refuse_untouchable, replacement_doubts, trigger,
+};
 use super::walls::surface_of;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Template;
-use dem_engine::state::particles::Pose;
 use dem_engine::state::regions::Region;
-use dem_engine::state::rules::{
-    Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger,
-};
+use dem_engine::state::rules::{Feed, Inlet, Outlet, Restore, Rules, Start};
 use dem_engine::state::walls::Wall;
 use dem_physics::geometry::{Bounds, Mesh};
 use dem_physics::rotation::numbers;
-use dem_physics::shape::inertia::of_union;
 
 /// The rules of the scene for adding, removing and replacing bodies. `about`: information on the
 /// bodies. Refuses a region whose file is not a closed surface.
@@ -37,13 +36,18 @@ pub(super) fn rules(
         regions.push(region(entry).map_err(|error| error.within(&place))?);
     }
     let number = |name: &String| scene.regions.keys().position(|known| known == name);
+    for template in templates {
+        refuse_restless(scene, template)?;
+        refuse_untouchable(scene, template)?;
+    }
     let triggers = templates
         .iter()
         .map(|template| trigger(scene, about.get(&template.body), template, number));
     let restores = templates.iter().map(|template| {
         let back = scene.replacement.get(&template.body)?.restore.as_ref()?;
         Some(Restore {
-            leaves: number(&back.leaves)?,
+            leaves: back.leaves.as_ref().and_then(number),
+            unbroken_for_s: back.unbroken_for_s.unwrap_or(0.0),
             min_particles: back.min_particles,
             strain_energy_j_kg: back.strain_energy_j_kg,
             inner_speed_m_s: back.fluctuation_velocity_m_s,
@@ -93,45 +97,6 @@ pub(super) fn rules(
         seed: scene.run.seed,
         regions,
     })
-}
-
-/// What turns a clump into its cluster. None: nothing does. `number`: of a region.
-fn trigger(
-    scene: &Scene,
-    about: Option<&About>,
-    template: &Template,
-    number: impl Fn(&String) -> Option<usize>,
-) -> Option<Trigger> {
-    let rule = scene.replacement.get(&template.body)?;
-    if rule.daughters.is_some() {
-        return None;
-    }
-    let when = &rule.when;
-    Some(Trigger {
-        enters: when.enters.as_ref().and_then(number),
-        force_n: when.force_n,
-        contact_force_n: when.contact_force_n,
-        principal_stress: when.principal_stress_pa.map(|limit_pa| {
-            let of_shape = about.and_then(|about| about.shape_volume_m3);
-            let volume_m3 = of_shape.unwrap_or_else(|| union_m3(template));
-            PrincipalStress {
-                limit_pa,
-                volume_m3_kg: volume_m3 / template.mass_kg,
-            }
-        }),
-        impact_energy_j: when.impact_energy_j,
-        time_s: when.time_s,
-        needs_all: rule.requires_all,
-    })
-}
-
-/// Volume of the union of the spheres of a body, m3.
-fn union_m3(template: &Template) -> f64 {
-    let spheres = template.spheres.iter();
-    let (centres, radii): (Vec<[f64; 3]>, Vec<f64>) = spheres
-        .map(|sphere| (sphere.place_m, sphere.radius_m))
-        .unzip();
-    of_union(&centres, &radii, 1.0).mass_kg
 }
 
 fn region(entry: &SceneRegion) -> Result<Region> {
@@ -190,75 +155,6 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
         doubts.extend(inlet_doubts(scene, state, inlet));
     }
     doubts
-}
-
-/// Clumps that may never be replaced.
-fn replacement_doubts(scene: &Scene, state: &State) -> Vec<String> {
-    let mut doubts = Vec::new();
-    for (template, trigger) in state
-        .clumps
-        .templates
-        .iter()
-        .zip(&state.model.rules.triggers)
-    {
-        let body = &template.body;
-        let by_daughters = scene
-            .replacement
-            .get(body)
-            .is_some_and(|rule| rule.daughters.is_some());
-        if by_daughters && state.contacts.is_none() {
-            doubts.push(format!(
-                "replacement of '{body}': nothing can touch it, so it takes in no energy"
-            ));
-        }
-        let Some(trigger) = trigger else {
-            continue;
-        };
-        if let Some(time_s) = trigger.time_s.filter(|t| *t > scene.run.end_time_s) {
-            doubts.push(format!(
-                "replacement of '{body}': its time {time_s} s comes after the end of the run, {} s",
-                scene.run.end_time_s
-            ));
-        }
-        let away = trigger
-            .enters
-            .filter(|&region| is_away(&state.model.rules.regions[region], state));
-        if away.is_some() {
-            doubts.push(format!(
-                "replacement of '{body}': its region lies away from all bodies, inlets and walls"
-            ));
-        }
-        let outlets = state.model.rules.outlets.iter();
-        let outlet = trigger.enters.and_then(|region| {
-            let mut taking = outlets.filter(|outlet| is_in_outlet(region, outlet, state));
-            taking.next()
-        });
-        if let Some(outlet) = outlet {
-            doubts.push(format!(
-                "replacement of '{body}': the outlet '{}' removes everything in its region at once; choose another region for one of them",
-                outlet.name
-            ));
-        }
-        if trigger.needs_contact() && state.contacts.is_none() {
-            doubts.push(format!(
-                "replacement of '{body}': nothing can touch it, so forces, stress and impact energy stay 0"
-            ));
-        }
-    }
-    doubts
-}
-
-/// Whether an outlet removes everything in a region: its own region is the same or, of a shape
-/// without hollows, contains the corners of the other.
-fn is_in_outlet(region: usize, outlet: &Outlet, state: &State) -> bool {
-    let regions = &state.model.rules.regions;
-    let taken = &regions[outlet.region];
-    let is_convex = !matches!(taken, Region::Inside(..));
-    let contains_all = || {
-        let corners = regions[region].bounds().corners();
-        corners.iter().all(|corner| taken.contains(*corner))
-    };
-    !outlet.removes_outside && (outlet.region == region || is_convex && contains_all())
 }
 
 /// Number of points of an inlet's region that are looked for in a closed surface.
@@ -373,18 +269,6 @@ fn inlet_doubts(scene: &Scene, state: &State, inlet: &Inlet) -> Vec<String> {
         }
     }
     doubts
-}
-
-/// Whether a region is disjoint from the box around all bodies, inlets and walls.
-fn is_away(region: &Region, state: &State) -> bool {
-    let places = state.particles.poses.iter().map(Pose::place);
-    let inlets = state.model.rules.inlets.iter();
-    let inlets = inlets.map(|inlet| state.model.rules.regions[inlet.region].bounds());
-    let walls = state.walls.iter().map(|wall| wall.bounds_in_space());
-    let all = inlets
-        .chain(walls)
-        .fold(Bounds::of(places), |all, one| all.with(&one));
-    !region.bounds().overlaps(&all)
 }
 
 /// Approximate number of bodies per second that can leave the region of an inlet. None: they do not

@@ -20,6 +20,7 @@ mod rigid;
 mod squeezed;
 mod step_limit;
 mod swap;
+mod touched;
 mod triggers;
 
 use std::fmt::Write;

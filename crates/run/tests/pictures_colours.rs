@@ -10,6 +10,7 @@ fn cluster(parent: Option<u32>, particles: u32) -> Cluster {
         parent,
         body: 0,
         created_s: 0.0,
+        unbroken_since_s: 0.0,
         ended_s: None,
         particles,
     }

@@ -118,6 +118,14 @@ impl<'a> Field<'a> {
         Ok(items)
     }
 
+    /// The items of a list, which is not empty, or the value itself if it is none.
+    pub(super) fn one_or_more(&self) -> Result<Vec<Self>> {
+        match self.node.value {
+            Value::List(_) => self.items(),
+            _ => Ok(vec![self.clone()]),
+        }
+    }
+
     /// The values of a list; None for anything else.
     fn listed(&self) -> Option<Vec<Field<'a>>> {
         let Value::List(items) = &self.node.value else {

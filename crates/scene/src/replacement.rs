@@ -14,6 +14,9 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, STRESS, TIME, VELOCITY};
 
+const NAME_OR_NAMES: Kind = Kind::Either(&[NAME, Kind::List(&NAME)]);
+const NAME: Kind = Kind::Text("a name in [walls] or [bodies]");
+
 /// Words for `require`; true if all conditions of `when` must hold.
 const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
@@ -44,6 +47,9 @@ plain_table! {
     pub struct When {
         /// The centre of mass of the clump is in this region.
         enters: Option<String> = text("enters", "a name in [regions]").otherwise("not used");
+        /// It touches one of these walls or bodies, by name: `"plate"` or `["plate", "anvil"]`. If
+        /// it became rigid while it touched them, it has to part from them first.
+        touches: Vec<String> = new("touches", NAME_OR_NAMES).otherwise("not used");
         /// The resultant contact force on the clump reaches this value.
         force_n: Option<f64> = quantity("force", &FORCE).positive().otherwise("not used");
         /// A single contact presses on the clump with this force. Unlike `force`, it sees a squeeze
@@ -68,12 +74,16 @@ plain_table! {
 
 plain_table! {
     RESTORE = "Restore";
-    /// Conditions that make a fragment rigid again.
+    /// Conditions that make a fragment, or an intact body, rigid again. At least one of `leaves` and
+    /// `unbroken_for`.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Restore {
         /// The centre of the fragment is outside this region.
-        leaves: String = text("leaves", "a name in [regions]")
-            .required("\"NAME\", a name in [regions]");
+        leaves: Option<String> = text("leaves", "a name in [regions]").otherwise("not used");
+        /// No bond of it has broken for this time, and it has been bonded for as long.
+        unbroken_for_s: Option<f64> = quantity("unbroken_for", &TIME)
+            .positive()
+            .otherwise("not used");
         /// It has at least this many particles.
         min_particles: u32 = new("min_particles", Kind::COUNT)
             .remedy("a usual value is 10")
@@ -102,7 +112,7 @@ pub(super) fn read_all(
                 refuse_others_daughters(&given, &daughters, &replacements)?;
                 with_daughters(&table, daughters)?
             }
-            None => read(&table, regions)?,
+            None => read(&table, root, bodies, regions)?,
         };
         check_body(root, &name, &field, bodies, &replacement)?;
         replacements.insert(name, replacement);
@@ -203,13 +213,21 @@ fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement
     })
 }
 
-fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replacement> {
+fn read(
+    table: &Table<'_>,
+    root: &Table<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+    regions: &BTreeMap<String, Region>,
+) -> Result<Replacement> {
     let when = Table::of(&table.need("when")?, &WHEN)?;
     if when.entries.is_empty() {
-        let remedy = "add enters = \"NAME\", force = \"100 N\", contact_force = \"100 N\", principal_stress = \"0.1 MPa\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
+        let remedy = "add enters = \"NAME\", touches = \"NAME\", force = \"100 N\", contact_force = \"100 N\", principal_stress = \"0.1 MPa\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
         return Err(when.fault("is an empty table", remedy));
     }
     when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?;
+    when.read_by("touches", |field| {
+        refuse_unknown_names(&field, root, bodies)
+    })?;
     Ok(Replacement {
         when: When::read(&when)?,
         requires_all: table
@@ -222,8 +240,30 @@ fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replace
 
 fn restore(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Restore> {
     let table = Table::of(field, &RESTORE)?;
-    table.need("leaves")?.reference(regions.keys(), "regions")?;
+    table.read_by("leaves", |field| field.reference(regions.keys(), "regions"))?;
+    if table.get("leaves").is_none() && table.get("unbroken_for").is_none() {
+        let remedy = "add unbroken_for = \"5 ms\", leaves = \"NAME\", a name in [regions], or both";
+        return Err(table.fault("has neither leaves nor unbroken_for", remedy));
+    }
     Restore::read(&table)
+}
+
+/// Refuses names of a trigger by touch that are neither walls nor bodies.
+fn refuse_unknown_names(
+    field: &Field<'_>,
+    root: &Table<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+) -> Result<()> {
+    let walls: Vec<String> = root
+        .named("walls")?
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect();
+    let known = || walls.iter().chain(bodies.keys());
+    for item in field.one_or_more()? {
+        item.reference(known(), "walls] or [bodies")?;
+    }
+    Ok(())
 }
 
 pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {

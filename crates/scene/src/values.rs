@@ -73,6 +73,27 @@ impl Read for String {
     }
 }
 
+impl Read for Vec<String> {
+    fn given(field: &Field<'_>, _: &Key) -> Result<Self> {
+        let items = field.one_or_more()?;
+        items
+            .iter()
+            .map(|item| item.text().map(str::to_owned))
+            .collect()
+    }
+
+    fn unless_given(_: Unless) -> Option<Self> {
+        Some(Self::new())
+    }
+
+    fn told(&self, key: &Key) -> String {
+        match &self[..] {
+            [] => key.usual(),
+            names => names.join(", "),
+        }
+    }
+}
+
 impl Read for bool {
     fn given(field: &Field<'_>, _: &Key) -> Result<Self> {
         field.boolean()

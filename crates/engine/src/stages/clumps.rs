@@ -7,4 +7,5 @@ pub mod motion;
 pub(crate) mod replacement;
 pub mod restoring;
 pub(crate) mod rigid_parts;
+pub(crate) mod touched;
 pub mod zones;

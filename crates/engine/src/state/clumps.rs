@@ -183,6 +183,8 @@ pub struct Clump {
     pub impact_energy_j: f64,
     /// Energy that it has taken in, if daughters can replace it.
     pub intake: Intake,
+    /// It became rigid while it touched what its trigger names, and still touches it.
+    pub rigid_while_touching: bool,
     /// Hits that would have broken its bonds.
     pub hits: Hits,
     /// Distance that the fastest of its points moved in the last drift, m, at most.

@@ -15,6 +15,8 @@ use dem_physics::geometry::Frame;
 pub struct Trigger {
     /// Its centre of mass is in this region: number in [`Rules::regions`].
     pub enters: Option<usize>,
+    /// It touches one of these walls or bodies. None: that does not matter.
+    pub touches: Option<Touches>,
     /// The resultant contact force exceeds this, N.
     pub force_n: Option<f64>,
     /// A single contact force on it exceeds this, N.
@@ -27,6 +29,15 @@ pub struct Trigger {
     pub time_s: Option<f64>,
     /// All of these must hold at once; otherwise one is enough.
     pub needs_all: bool,
+}
+
+/// What a clump has to touch.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Touches {
+    /// Numbers of walls.
+    pub walls: Vec<usize>,
+    /// Numbers of bodies in [`super::model::Model::bodies`].
+    pub bodies: Vec<u32>,
 }
 
 /// A limit of the mean stress of the contacts of a clump.
@@ -46,15 +57,21 @@ impl Trigger {
 
     /// Whether it depends on contacts.
     pub fn needs_contact(&self) -> bool {
-        self.force_n.is_some() || self.impact_energy_j.is_some() || self.needs_squeeze()
+        self.force_n.is_some()
+            || self.touches.is_some()
+            || self.impact_energy_j.is_some()
+            || self.needs_squeeze()
     }
 }
 
 /// Conditions under which a cluster becomes a clump again.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Restore {
-    /// Its centre of mass is outside this region: number in [`Rules::regions`].
-    pub leaves: usize,
+    /// Its centre of mass is outside this region: number in [`Rules::regions`]. None: it may be
+    /// anywhere.
+    pub leaves: Option<usize>,
+    /// No bond of it has broken for this time, and it has been bonded for as long, s.
+    pub unbroken_for_s: f64,
     /// It has at least this many particles.
     pub min_particles: u32,
     /// The elastic energy of its bonds per mass is below this, J/kg.
@@ -235,17 +252,6 @@ pub struct Start {
 }
 
 impl Rules {
-    /// The condition under which a fragment of a template that became a clump becomes a cluster:
-    /// the same as for the body, but without the time, which has passed. None: never.
-    pub(crate) fn trigger_of_fragment(&self, base: usize) -> Option<Trigger> {
-        let trigger = self.triggers.get(base)?.clone()?;
-        let asks = trigger.enters.is_some() || trigger.needs_contact();
-        asks.then_some(Trigger {
-            time_s: None,
-            ..trigger
-        })
-    }
-
     /// Whether the bonded zone of a body contains a place, m, while the walls are where they are.
     pub(crate) fn zone_contains(&self, zone: &Zone, place_m: [f64; 3], walls: &[Wall]) -> bool {
         let at_start = zone.carrier.map_or(place_m, |carrier| {

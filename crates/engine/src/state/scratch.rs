@@ -52,6 +52,8 @@ pub struct Scratch {
     pub(crate) crushed: Vec<u32>,
     /// How contacts squeeze each clump. Empty: no trigger needs it.
     pub(crate) squeezes: Vec<Squeeze>,
+    /// Whether each clump touches what its trigger names. Empty: no trigger names anything.
+    pub(crate) touched: Vec<bool>,
     /// The liquid bridges in this step.
     pub(crate) bridges: BridgeScratch,
     /// Contacts that triggers have read in this step.

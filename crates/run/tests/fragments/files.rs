@@ -229,6 +229,7 @@ fn the_text_of_a_split_is_short_however_many_pieces_there_are() {
         parent: None,
         body: 0,
         created_s: 0.0,
+        unbroken_since_s: 0.0,
         ended_s: None,
         particles,
     };

@@ -14,6 +14,7 @@ fn clusters(lives: &[(f64, Option<f64>)]) -> Vec<Cluster> {
         parent: None,
         body: 0,
         created_s,
+        unbroken_since_s: created_s,
         ended_s,
         particles: 1,
     };

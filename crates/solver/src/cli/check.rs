@@ -84,13 +84,10 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     }
     let steps = steps(scene, plan);
     let bytes = memory_bytes(&plan.state);
-    // The time of the first steps predicts nothing if bodies are added, removed or replaced.
-    let trial = (plan.state.model.rules.are_none())
-        .then(|| Trial::of(scene, plan))
-        .transpose()?;
+    let trial = Trial::of(scene, plan, steps.first)?;
     let of_stages = |needed: bool| -> Vec<Value> {
         let of_stage = |stage: &PlannedStage| {
-            let cost_ns = trial.as_ref().and_then(|trial| trial.cost_ns(stage));
+            let cost_ns = trial.cost_ns(stage);
             let would = (stage.stage.saving)(&plan.state);
             json!({
                 "name": stage.stage.name,
@@ -114,7 +111,7 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "limit_s": plan.step.limit.step_s,
                 "limit_at_impact_s": plan.step.foreseen_s,
                 "impact_speed_m_s": plan.step.impact_speed_m_s,
-                "notes": plan.notes,
+                "notes": plan.notes.iter().chain(&trial.notes).collect::<Vec<_>>(),
                 "warnings": plan.warnings.iter().chain(&plan.forecast.warnings).collect::<Vec<_>>(),
                 "first_contacts": plan.forecast.first_contacts,
                 "to_be_fed": plan.forecast.to_come,
@@ -127,9 +124,9 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "stages": of_stages(true),
                 "inactive": of_stages(false),
                 "memory_bytes": bytes,
-                "predicted_run_time_s": trial.as_ref().map(|trial| trial.range_s(steps.first)[0]),
-                "predicted_time_of_pictures_s": trial.as_ref().map(|trial| trial.pictures_s),
-                "predicted_run_time_range_s": trial.as_ref().map(|trial| trial.range_s(steps.first)),
+                "predicted_run_time_s": trial.range_s[0],
+                "predicted_time_of_pictures_s": trial.pictures_s,
+                "predicted_run_time_range_s": trial.range_s,
             });
             write_json_text(out, &value)
         } else {
@@ -137,7 +134,7 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 out,
                 "{}\n{}",
                 scene.describe(),
-                text(plan, steps, bytes, trial.as_ref())
+                text(plan, steps, bytes, &trial)
             )
         }
     })
@@ -162,7 +159,7 @@ fn steps(scene: &Scene, plan: &Plan) -> Steps {
     }
 }
 
-fn text(plan: &Plan, steps: Steps, bytes: usize, trial: Option<&Trial>) -> String {
+fn text(plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) -> String {
     let mut text = contents(plan) + &time_step(plan);
     let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
     let state = &plan.state;
@@ -187,7 +184,7 @@ fn text(plan: &Plan, steps: Steps, bytes: usize, trial: Option<&Trial>) -> Strin
         let name = if stage.needed { "active" } else { "inactive" };
         line(name, stage_text(stage, state, trial));
     }
-    for note in &plan.notes {
+    for note in plan.notes.iter().chain(&trial.notes) {
         line("note", note.clone());
     }
     for warning in plan.warnings.iter().chain(&plan.forecast.warnings) {
@@ -201,23 +198,21 @@ fn text(plan: &Plan, steps: Steps, bytes: usize, trial: Option<&Trial>) -> Strin
         String::new()
     };
     line("memory", format!("about {}{with_fed}", size_text(bytes)));
-    line(
-        "run time",
-        trial.map_or(
-            "not predicted: bodies are fed, discharged or replaced".to_owned(),
-            |trial| run_time_text(trial.range_s(steps.first)) + &trial.pictures_text(),
-        ),
-    );
+    line("run time", run_time_text(trial) + &trial.pictures_text());
     text
 }
 
-/// The run time between two predictions, s.
-fn run_time_text([least_s, most_s]: [f64; 2]) -> String {
+/// The run time between two predictions.
+fn run_time_text(trial: &Trial) -> String {
+    let [least_s, most_s] = trial.range_s;
     let [least, most] = [least_s, most_s].map(|s| significant(s, 2));
     if most_s <= ALIKE * least_s {
         format!("about {least} s on this machine")
     } else {
-        format!("about {least} s on this machine, {most} s while it is as busy as now")
+        format!(
+            "about {least} s on this machine, {most} s {}",
+            trial.longest_if
+        )
     }
 }
 
@@ -358,14 +353,14 @@ fn estimate(name: &str, step_s: f64, plan: &Plan) -> String {
 }
 
 /// A stage: the reason why it is active or not, its cost, or the saving from skipping it.
-fn stage_text(stage: &PlannedStage, state: &State, trial: Option<&Trial>) -> String {
+fn stage_text(stage: &PlannedStage, state: &State, trial: &Trial) -> String {
     let mut text = format!("{}: {}", stage.stage.name, stage.why);
     let mut costs = Vec::new();
     if stage.needed {
         if stage.bytes > 0 {
             costs.push(size_text(stage.bytes));
         }
-        costs.extend((trial.and_then(|trial| trial.cost_ns(stage))).map(time_text));
+        costs.extend(trial.cost_ns(stage).map(time_text));
         costs.extend((stage.stage.within).map(|other| format!("timed with {other}")));
     } else if let Some(saved) = (stage.stage.saving)(state) {
         if saved.bytes > 0 {

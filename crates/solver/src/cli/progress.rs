@@ -10,12 +10,16 @@ use dem_terminal::progress::{ProgressBar, progress_bar};
 
 use dem_runner::SoFar;
 
+use super::pace::{Pace, left_in_words};
+
 /// Runs that take less have no lines, s; others have the first one by then.
 const SHORT_S: f64 = 30.0;
 
 /// Shows how far a run has come.
 pub(super) struct ShownProgress {
     bar: ProgressBar,
+    begun: Instant,
+    pace: RefCell<Pace>,
     /// None on a terminal, and if nothing is to be shown.
     log: Option<RefCell<Log>>,
 }
@@ -23,6 +27,7 @@ pub(super) struct ShownProgress {
 /// The lines in a log.
 pub(super) struct Log {
     begun: Instant,
+    pace: Pace,
     /// At the begin of each line, such as "run " or "run at twice the rate ".
     prefix: String,
     tenths: Tenths,
@@ -40,9 +45,9 @@ struct Tenths {
 }
 
 impl Tenths {
-    /// The time left, s, if a line is due at this fraction of the run, `elapsed_s` after its begin:
+    /// The time left, `left_s`, if a line is due at this fraction of the run, `elapsed_s` after its begin:
     /// at each tenth of a run that will take [`SHORT_S`], and once that time has passed.
-    fn due(&mut self, fraction: f64, elapsed_s: f64) -> Option<f64> {
+    fn due(&mut self, fraction: f64, elapsed_s: f64, left_s: Option<f64>) -> Option<f64> {
         let first = *self.first.get_or_insert(fraction);
         let tenths = (10.0 * fraction + 1e-9) as u32;
         let is_tenth = tenths > self.told.max((10.0 * first) as u32);
@@ -51,10 +56,9 @@ impl Tenths {
             return None;
         }
         self.told = self.told.max(tenths);
-        let left_s = elapsed_s * (1.0 - fraction) / (fraction - first);
-        let is_told = elapsed_s + left_s >= SHORT_S && left_s.is_finite() && tenths < 10;
-        self.has_begun |= is_told;
-        is_told.then_some(left_s)
+        let told = left_s.filter(|left_s| elapsed_s + left_s >= SHORT_S && tenths < 10);
+        self.has_begun |= told.is_some();
+        told
     }
 }
 
@@ -63,14 +67,19 @@ impl ShownProgress {
     pub(super) fn new(quiet: bool) -> Self {
         let is_terminal = std::io::stderr().is_terminal();
         let log = (!quiet && !is_terminal).then(|| RefCell::new(Log::new("run ")));
-        let template = "run {prefix}[{bar:30}] {percent:>3} %  {msg}{eta} left";
-        let bar = progress_bar(quiet, 1000, template);
-        Self { bar, log }
+        let template = "run {prefix}[{bar:30}] {percent:>3} %  {msg}";
+        Self {
+            bar: progress_bar(quiet, 1000, template),
+            begun: Instant::now(),
+            pace: RefCell::default(),
+            log,
+        }
     }
 
     /// Begins another run; `prefix` stands before its progress.
     pub(super) fn begin(&self, prefix: &'static str) {
         self.bar.set_prefix(prefix);
+        self.pace.replace(Pace::default());
         if let Some(log) = &self.log {
             *log.borrow_mut() = Log::new(&format!("run {prefix}"));
         }
@@ -79,7 +88,10 @@ impl ShownProgress {
     /// Shows how far the run has come.
     pub(super) fn tell(&self, so_far: &SoFar) {
         self.bar.set_position((1000.0 * so_far.fraction) as u64);
-        self.bar.set_message(format!("{so_far}  "));
+        let elapsed_s = self.begun.elapsed().as_secs_f64();
+        let left_s = self.pace.borrow_mut().left_s(so_far.fraction, elapsed_s);
+        let left = left_s.map_or_else(String::new, left_in_words);
+        self.bar.set_message(format!("{so_far}  {left}"));
         if let Some(log) = &self.log {
             log.borrow_mut().tell(so_far.fraction, so_far);
         }
@@ -96,6 +108,7 @@ impl Log {
     pub(super) fn new(prefix: &str) -> Self {
         Self {
             begun: Instant::now(),
+            pace: Pace::default(),
             prefix: prefix.to_owned(),
             tenths: Tenths::default(),
         }
@@ -104,7 +117,8 @@ impl Log {
     /// Writes a line if one is due at this fraction of the whole.
     pub(super) fn tell(&mut self, fraction: f64, what: &dyn Display) {
         let elapsed_s = self.begun.elapsed().as_secs_f64();
-        if let Some(left_s) = self.tenths.due(fraction, elapsed_s) {
+        let left_s = self.pace.left_s(fraction, elapsed_s);
+        if let Some(left_s) = self.tenths.due(fraction, elapsed_s, left_s) {
             // A closed output is not a reason to stop.
             let _ = writeln!(
                 std::io::stderr(),
@@ -121,14 +135,19 @@ impl Log {
 mod tests {
     use super::*;
 
+    fn due((tenths, pace): &mut (Tenths, Pace), fraction: f64, elapsed_s: f64) -> Option<f64> {
+        let left_s = pace.left_s(fraction, elapsed_s);
+        tenths.due(fraction, elapsed_s, left_s)
+    }
+
     #[test]
     fn a_log_has_a_line_for_each_tenth_of_a_long_run() {
-        let mut tenths = Tenths::default();
+        let mut tenths = (Tenths::default(), Pace::default());
         // 200 s, told every percent.
         let told: Vec<(u32, f64)> = (0..=100)
             .filter_map(|percent| {
                 let fraction = f64::from(percent) / 100.0;
-                Some((percent, tenths.due(fraction, 200.0 * fraction)?))
+                Some((percent, due(&mut tenths, fraction, 200.0 * fraction)?))
             })
             .collect();
         let percents: Vec<u32> = told.iter().map(|(percent, _)| *percent).collect();
@@ -141,22 +160,24 @@ mod tests {
             assert!((left_s - 2.0 * f64::from(100 - percent)).abs() < 1e-9);
         }
         // 1000 s, told every percent: the first line after 30 s.
-        let mut long = Tenths::default();
+        let mut long = (Tenths::default(), Pace::default());
         let lines = (0..=100).filter(|percent| {
             let fraction = f64::from(*percent) / 100.0;
-            long.due(fraction, 1000.0 * fraction).is_some()
+            due(&mut long, fraction, 1000.0 * fraction).is_some()
         });
         assert_eq!(
             lines.collect::<Vec<u32>>(),
             [3, 10, 20, 30, 40, 50, 60, 70, 80, 90]
         );
-        let mut short = Tenths::default();
-        assert!((0..=100).all(|percent| short.due(f64::from(percent) / 100.0, 1.0).is_none()));
+        let mut short = (Tenths::default(), Pace::default());
+        assert!(
+            (0..=100).all(|percent| due(&mut short, f64::from(percent) / 100.0, 1.0).is_none())
+        );
         // Resumed at 55 %: 45 % in 90 s.
-        let mut resumed = Tenths::default();
-        assert_eq!(resumed.due(0.55, 0.0), None);
-        assert_eq!(resumed.due(0.6, 31.0).map(f64::round), Some(248.0));
-        assert_eq!(resumed.due(0.65, 40.0), None);
+        let mut resumed = (Tenths::default(), Pace::default());
+        assert_eq!(due(&mut resumed, 0.55, 0.0), None);
+        assert_eq!(due(&mut resumed, 0.6, 31.0).map(f64::round), Some(248.0));
+        assert_eq!(due(&mut resumed, 0.65, 40.0), None);
     }
 
     #[test]

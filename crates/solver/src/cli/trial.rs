@@ -8,6 +8,7 @@ use dem_pictures::film::chosen_for_film;
 use dem_pictures::png_file::{Compression, to_png};
 use dem_scene::Scene;
 
+use super::flow_trial::FlowTrial;
 use dem_engine::clock::StageClock;
 use dem_engine::stages::ledger::bookkeeping::CHECKS;
 use dem_engine::step::{number_of, step};
@@ -18,21 +19,49 @@ use dem_runner::pictures::View;
 const SAMPLES: usize = 8;
 /// Number of steps of a sample, and their time limit, s.
 const SAMPLE: (u64, f64) = (250, 0.07);
-/// Cost of the first steps, tried on a copy in several samples.
+
+/// Cost of the first steps, tried on a copy.
 pub(super) struct Trial {
-    /// Of the fastest sample, which other programs have disturbed least.
+    /// Of a step; in several samples, of the fastest one, which other programs have disturbed
+    /// least.
     per_step_s: f64,
-    /// Of the slowest sample.
-    most_per_step_s: f64,
     clock: StageClock,
+    /// Shortest and longest run time to expect, with pictures, s.
+    pub(super) range_s: [f64; 2],
+    /// When it is the longest.
+    pub(super) longest_if: &'static str,
     /// Number of pictures, and the time for all of them and their film, s.
     pictures: usize,
     pub(super) pictures_s: f64,
+    /// What it has shown, a sentence each.
+    pub(super) notes: Vec<String>,
 }
 
 impl Trial {
-    pub(super) fn of(scene: &Scene, plan: &Plan) -> Result<Self> {
-        let (pictures, pictures_s) = time_of_pictures(scene, plan)?;
+    /// `steps`: number of steps of the run, of which the first few tell the time of all unless
+    /// bodies come, go or are replaced.
+    pub(super) fn of(scene: &Scene, plan: &Plan, steps: f64) -> Result<Self> {
+        let mut trial = if plan.state.model.rules.are_none() {
+            Self::of_steps(plan, steps)
+        } else {
+            let flow = FlowTrial::of(&plan.state, scene.run.end_time_s);
+            Self {
+                notes: flow.notes().collect(),
+                per_step_s: flow.per_step_s,
+                range_s: flow.range_s,
+                longest_if: "if bodies go on gathering as in the trial",
+                clock: flow.clock,
+                pictures: 0,
+                pictures_s: 0.0,
+            }
+        };
+        (trial.pictures, trial.pictures_s) = time_of_pictures(scene, plan)?;
+        trial.range_s = trial.range_s.map(|s| s + trial.pictures_s);
+        Ok(trial)
+    }
+
+    /// By the fastest and by the slowest sample.
+    fn of_steps(plan: &Plan, steps: f64) -> Self {
         let mut copy = plan.state.clone();
         let mut sample_s = || {
             let clock = Instant::now();
@@ -45,18 +74,17 @@ impl Trial {
             clock.elapsed().as_secs_f64() / done as f64
         };
         let samples_s: Vec<f64> = (0..SAMPLES).map(|_| sample_s()).collect();
-        Ok(Self {
-            per_step_s: samples_s.iter().copied().fold(f64::INFINITY, f64::min),
-            most_per_step_s: samples_s.iter().copied().fold(0.0, f64::max),
+        let per_step_s = samples_s.iter().copied().fold(f64::INFINITY, f64::min);
+        let most_per_step_s = samples_s.iter().copied().fold(0.0, f64::max);
+        Self {
+            per_step_s,
             clock: copy.scratch.clock,
-            pictures,
-            pictures_s,
-        })
-    }
-
-    /// The run time with pictures by the fastest and by the slowest sample, s.
-    pub(super) fn range_s(&self, steps: f64) -> [f64; 2] {
-        [self.per_step_s, self.most_per_step_s].map(|s| steps * s + self.pictures_s)
+            range_s: [per_step_s, most_per_step_s].map(|s| steps * s),
+            longest_if: "while it is as busy as now",
+            pictures: 0,
+            pictures_s: 0.0,
+            notes: Vec::new(),
+        }
     }
 
     /// What pictures take, after the run time.

@@ -149,7 +149,7 @@ const SHORT: [[&str; 4]; 40] = [
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
     ["chute", "0.2 s", "", ""],
-    ["chute-back", "20 ms", "", ""],
+    ["chute-region", "20 ms", "", ""],
     ["chute-bonded", "20 ms", "", ""],
     ["clamped", "2 ms", "bending-sample", "5mm..7mm"],
     ["compression", "", "bar", "4mm..6mm"],

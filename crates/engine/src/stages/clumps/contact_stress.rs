@@ -25,7 +25,7 @@ pub(super) fn find_squeezes(state: &State, squeezes: &mut Vec<Squeeze>) -> usize
 }
 
 /// The clump of a particle. None: it is free.
-fn clump_of(state: &State, particle: u32) -> Option<usize> {
+pub(super) fn clump_of(state: &State, particle: u32) -> Option<usize> {
     let clumps = &state.clumps.all;
     clumps
         .partition_point(|clump| clump.first <= particle)

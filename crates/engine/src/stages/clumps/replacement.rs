@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::contact_stress::find_squeezes;
+use super::touched::find_touched;
 use crate::stages::population::change::apply_topology_change;
 use crate::stages::stage::{Need, Stage};
 use crate::state::State;
@@ -33,22 +34,24 @@ pub(crate) const REPLACEMENT: Stage = Stage::new("replacement", |state, _| {
     )
 });
 
-/// Contacts that triggers by single forces or stress read.
+/// Contacts that triggers by touch, single forces or stress read.
 pub(crate) const SQUEEZE: Stage = Stage {
     within: Some(REPLACEMENT.name),
     ..Stage::new("squeeze of clumps", |state, _| {
         let mut triggers = state.model.rules.triggers.iter().flatten();
         Need::of(
-            state.contacts.is_some() && triggers.any(|trigger| trigger.needs_squeeze()),
-            || "a trigger reads the forces of single contacts".to_owned(),
-            "no trigger reads the forces of single contacts",
+            state.contacts.is_some()
+                && triggers.any(|trigger| trigger.touches.is_some() || trigger.needs_squeeze()),
+            || "a trigger reads single contacts".to_owned(),
+            "no trigger reads single contacts",
         )
     })
 };
 
 /// The conditions of a trigger, in the order in which they are asked.
-const CAUSES: [&str; 6] = [
+const CAUSES: [&str; 7] = [
     "enters",
+    "touches",
     "force",
     "contact_force",
     "principal_stress",
@@ -80,14 +83,24 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
 /// Clumps whose trigger fires: their numbers and the causes.
 fn all_triggered(state: &mut State) -> Vec<(usize, &'static str)> {
     let mut squeezes = std::mem::take(&mut state.scratch.squeezes);
+    let mut touched = std::mem::take(&mut state.scratch.touched);
     state.scratch.squeezing += find_squeezes(state, &mut squeezes);
-    let found = triggered(state, &squeezes).collect();
+    state.scratch.squeezing += find_touched(state, &mut touched);
+    for (clump, &touched) in state.clumps.all.iter_mut().zip(&touched) {
+        clump.rigid_while_touching &= touched;
+    }
+    let found = triggered(state, &squeezes, &touched).collect();
     state.scratch.squeezes = squeezes;
+    state.scratch.touched = touched;
     found
 }
 
 /// Clumps that become clusters: their numbers and the causes.
-fn triggered(state: &State, squeezes: &[Squeeze]) -> impl Iterator<Item = (usize, &'static str)> {
+fn triggered(
+    state: &State,
+    squeezes: &[Squeeze],
+    touched: &[bool],
+) -> impl Iterator<Item = (usize, &'static str)> {
     let rules = &state.model.rules;
     (state.clumps.all.iter().enumerate()).filter_map(move |(n, clump)| {
         let template = clump.template as usize;
@@ -95,29 +108,26 @@ fn triggered(state: &State, squeezes: &[Squeeze]) -> impl Iterator<Item = (usize
         if start.is_some_and(|start| start.bonded || start.sphere) {
             return Some((n, STARTS_BONDED));
         }
-        let squeeze = squeezes.get(n);
-        let cause = match rules.triggers.get(template) {
-            Some(trigger) => met(trigger.as_ref()?, clump, squeeze, state)?,
-            None => {
-                let base = state.base_of(clump.template) as usize;
-                met(&rules.trigger_of_fragment(base)?, clump, squeeze, state)?
-            }
-        };
-        Some((n, cause))
+        let base = state.base_of(clump.template) as usize;
+        let trigger = rules.triggers.get(base)?.as_ref()?;
+        let touches = touched.get(n) == Some(&true) && !clump.rigid_while_touching;
+        Some((n, met(trigger, clump, (touches, squeezes.get(n)), state)?))
     })
 }
 
 /// The condition of a trigger that a clump meets, or the first one if it needs all and meets all.
-/// `squeeze`: None if no trigger needs it, or nothing can touch.
+/// `touched`: by what the trigger names; `squeeze`: None if no trigger needs it, or nothing can
+/// touch.
 fn met(
     trigger: &Trigger,
     clump: &Clump,
-    squeeze: Option<&Squeeze>,
+    (touched, squeeze): (bool, Option<&Squeeze>),
     state: &State,
 ) -> Option<&'static str> {
     let enters = trigger
         .enters
         .map(|region| state.model.rules.regions[region].contains(clump.place_m));
+    let touches = trigger.touches.as_ref().map(|_| touched);
     let force = trigger
         .force_n
         .map(|limit| Vector3::from(clump.force_n).norm() > limit);
@@ -132,13 +142,22 @@ fn met(
         squeeze.is_some_and(|squeeze| squeeze.principal_stress_pa(volume_m3) > stress.limit_pa)
     });
     // A trigger time has passed for good: a restored clump needs another condition.
-    let is_again = state
-        .population
-        .base_of_cluster
-        .contains_key(&clump.cluster);
-    let time = trigger.time_s.filter(|_| !is_again);
+    let is_again = || {
+        let is_fragment = clump.template as usize >= state.model.rules.triggers.len();
+        let known = &state.population.base_of_cluster;
+        is_fragment || known.contains_key(&clump.cluster)
+    };
+    let time = trigger.time_s.filter(|_| !is_again());
     let time = time.map(|from| state.time_s >= from);
-    let all = [enters, force, contact_force, principal_stress, energy, time];
+    let all = [
+        enters,
+        touches,
+        force,
+        contact_force,
+        principal_stress,
+        energy,
+        time,
+    ];
     let mut asked = CAUSES
         .into_iter()
         .zip(all)

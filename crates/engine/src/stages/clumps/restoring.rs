@@ -1,5 +1,5 @@
 //! Clusters that become rigid clumps again: complete bodies and fragments that have left a region
-//! and come to rest internally. Not in Platzer 2022.
+//! or whose bonds hold for some time, and that have come to rest internally. Not in Platzer 2022.
 //!
 //! Relative motion of the particles is lost. The strain of a fragment, and of a complete body that
 //! touches something, is kept in its template and returns if it becomes a cluster again. The strain
@@ -52,10 +52,10 @@ pub fn restore_clumps(state: &mut State) -> usize {
 /// The clusters that have become clumps again. None: there are none.
 fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     let clusters = state.clusters.as_ref()?;
-    let outside: Vec<(u32, usize, u32)> = (clusters.living())
-        .filter_map(|id| outside(id, state).map(|(base, instance)| (id, base, instance)))
+    let due: Vec<(u32, usize, u32)> = (clusters.living())
+        .filter_map(|id| is_due(id, state).map(|(base, instance)| (id, base, instance)))
         .collect();
-    if outside.is_empty() {
+    if due.is_empty() {
         return None;
     }
     // Energies are those at the time of the positions: between particles they change within a step.
@@ -64,7 +64,7 @@ fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     let mut to_clumps = Vec::new();
     let mut happened = Vec::new();
     let mut gained_j = 0.0;
-    for (id, base, instance) in outside {
+    for (id, base, instance) in due {
         let Some(rule) = &state.model.rules.restores[base] else {
             continue;
         };
@@ -129,8 +129,8 @@ fn base_of(id: u32, state: &State) -> Option<(usize, u32)> {
 }
 
 /// The template and the instance of the body that a cluster comes from, if the cluster is large
-/// enough to be a clump again and has left the region.
-fn outside(id: u32, state: &State) -> Option<(usize, u32)> {
+/// enough to be a clump again, has been without a break for long enough and has left the region.
+fn is_due(id: u32, state: &State) -> Option<(usize, u32)> {
     let members = state.clusters.as_ref()?.members(id);
     let p = &state.particles;
     if *members.first()? as usize >= p.free {
@@ -141,9 +141,16 @@ fn outside(id: u32, state: &State) -> Option<(usize, u32)> {
     if members.len() < rule.min_particles as usize {
         return None;
     }
-    let (_, centre) = mass_and_centre(members, p);
-    let has_left = !state.model.rules.regions[rule.leaves].contains(centre.into());
-    has_left.then_some((base, instance))
+    if state.time_s - state.clusters.as_ref()?.history[id as usize].unbroken_since_s
+        < rule.unbroken_for_s
+    {
+        return None;
+    }
+    let is_in = |region: usize| {
+        let (_, centre) = mass_and_centre(members, p);
+        state.model.rules.regions[region].contains(centre.into())
+    };
+    (!rule.leaves.is_some_and(is_in)).then_some((base, instance))
 }
 
 /// Kinetic energy of a cluster in excess of that of a rigid body with the same momenta, J.
@@ -202,6 +209,7 @@ fn as_clump(id: u32, base: usize, (members, is_free): (&[u32], bool), state: &mu
         turned,
         velocity_m_s: velocity.into(),
         angular_momentum: angular.into(),
+        rigid_while_touching: true,
         ..Clump::default()
     }
 }

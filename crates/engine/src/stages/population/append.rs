@@ -64,6 +64,7 @@ pub(super) fn arrived(state: &mut State, mut clump: Clump, number: u32) -> (Clum
         parent: None,
         body: state.model.body_number(&template.body),
         created_s: state.time_s,
+        unbroken_since_s: state.time_s,
         ended_s: None,
         particles: template.outer.len() as u32,
     };

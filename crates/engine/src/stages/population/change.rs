@@ -55,7 +55,9 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     rebuilt.receive(state, coming, &mut history);
     state.clusters = clusters;
     for created in &created {
-        history[created.clump.cluster as usize].particles = created.template.spheres.len() as u32;
+        let cluster = &mut history[created.clump.cluster as usize];
+        cluster.particles = created.template.spheres.len() as u32;
+        cluster.unbroken_since_s = state.time_s;
     }
     for clump in &state.clumps.all {
         let outer = state.clumps.template(clump).outer.len();

@@ -22,6 +22,8 @@ pub struct Cluster {
     pub body: u32,
     /// Time at which it was found, s.
     pub created_s: f64,
+    /// Time of its last broken bond, s, or at which it was found or became bonded if that is later.
+    pub unbroken_since_s: f64,
     /// Time at which it was found in pieces, s; none: it is intact.
     pub ended_s: Option<f64>,
     /// Number of its particles.
@@ -206,7 +208,9 @@ impl Clusters {
             let start = self.starts[parent as usize] as usize;
             self.join_bonded(start..start + count, bonds);
             let children = self.number(Some(parent), time_s, start..start + count);
-            if !children.is_empty() {
+            if children.is_empty() {
+                self.history[parent as usize].unbroken_since_s = time_s;
+            } else {
                 splits.push(Split { parent, children });
             }
         }
@@ -254,6 +258,7 @@ impl Clusters {
                     parent,
                     body,
                     created_s: time_s,
+                    unbroken_since_s: time_s,
                     ended_s: None,
                     particles: 0,
                 });

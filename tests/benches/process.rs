@@ -1,0 +1,203 @@
+//! The table of doc/real-time.md: what a second of a process costs, on one thread and on two, and
+//! how much bonds only where bodies can break save. `cargo bench -p dem-tests --bench process`,
+//! then the names of cases or nothing, and `--page FILE` to write it. A quarter of an hour; with
+//! the word `fine` cakes of 2,400 spheres, half an hour more.
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a benchmark stops where it fails, and prints a table"
+)]
+
+mod page;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use dem_io::Body;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
+use dem_run::plan::plan;
+use dem_run::step::step;
+use dem_run::threads::keep_awake;
+
+use self::page::{Table, words};
+
+/// A scene of `data/scenes` whose steps are timed from one time to another.
+struct Case {
+    name: &'static str,
+    scene: &'static str,
+    set: &'static [&'static str],
+    /// s
+    between_s: [f64; 2],
+    /// The case that it is compared with.
+    beside: Option<&'static str>,
+    /// Its cakes are of spheres of this diameter instead of those of the scene.
+    diameters: Option<&'static str>,
+}
+
+const USUAL: Case = Case {
+    name: "chute",
+    scene: "chute",
+    set: &[],
+    between_s: [0.0, 2.0],
+    beside: Some("chute-bonded"),
+    diameters: None,
+};
+
+const FINE: &str = "4.6mm..5.8mm";
+
+const CASES: [Case; 8] = [
+    Case {
+        name: "chute-bonded",
+        scene: "chute-bonded",
+        beside: None,
+        ..USUAL
+    },
+    Case {
+        name: "chute-region",
+        scene: "chute-region",
+        ..USUAL
+    },
+    USUAL,
+    Case {
+        name: "five-a-second",
+        set: &["inlets.feed.rate=\"5 /s\""],
+        between_s: [1.0, 5.0],
+        beside: None,
+        ..USUAL
+    },
+    Case {
+        name: "process",
+        scene: "process",
+        between_s: [0.0, 3.0],
+        beside: None,
+        ..USUAL
+    },
+    Case {
+        name: "hundred-lanes",
+        set: &[
+            "inlets.feed.rate=\"100 /s\"",
+            "walls.belt.box={min=[\"-2.1 m\",\"-5 m\",\"-20 mm\"],max=[\"0 m\",\"5 m\",\"0 m\"]}",
+            "walls.plate.box={min=[\"0.44 m\",\"-5 m\",\"-0.4 m\"],max=[\"0.46 m\",\"5 m\",\"0.3 m\"]}",
+            "regions.gate.box={min=[\"-2 m\",\"-4.8 m\",\"20 mm\"],max=[\"-1.9 m\",\"4.8 m\",\"30 mm\"]}",
+            "regions.scene.box={min=[\"-2.2 m\",\"-6 m\",\"-0.5 m\"],max=[\"0.8 m\",\"6 m\",\"0.6 m\"]}",
+        ],
+        between_s: [0.9, 1.1],
+        beside: None,
+        ..USUAL
+    },
+    Case {
+        name: "fine-bonded",
+        scene: "chute-bonded",
+        between_s: [0.0, 0.9],
+        beside: None,
+        diameters: Some(FINE),
+        ..USUAL
+    },
+    Case {
+        name: "fine",
+        between_s: [0.0, 0.9],
+        beside: Some("fine-bonded"),
+        diameters: Some(FINE),
+        ..USUAL
+    },
+];
+
+/// What a run of a case costs.
+#[derive(Clone, Copy)]
+struct Cost {
+    /// Run time over simulated time.
+    per_s: f64,
+    steps: u64,
+    broken: u64,
+}
+
+impl Case {
+    fn cost(&self, threads: usize) -> Cost {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let file = root
+            .join("data/scenes")
+            .join(self.scene)
+            .with_extension("toml");
+        let set: Vec<String> = self.set.iter().map(|&set| set.to_owned()).collect();
+        let scene = dem_scene::read_scene(&file, &set).expect("a scene");
+        let bodies = match self.diameters {
+            Some(diameters) => BTreeMap::from([("cake".to_owned(), cake(&root, diameters))]),
+            None => dem_scene::read_bodies(&scene).expect("bodies"),
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads start").install(|| {
+            let mut state = plan(&scene, bodies, threads, false).expect("plans").state;
+            let [from_s, to_s] = self.between_s;
+            keep_awake(|| {
+                while state.time_s < from_s {
+                    step(&mut state);
+                }
+                let (clock, before) = (Instant::now(), state.steps);
+                while state.time_s < to_s {
+                    step(&mut state);
+                }
+                Cost {
+                    per_s: clock.elapsed().as_secs_f64() / (to_s - from_s),
+                    steps: state.steps - before,
+                    broken: state.broken_count,
+                }
+            })
+        })
+    }
+}
+
+/// A filter cake of spheres of these diameters.
+fn cake(root: &Path, diameters: &str) -> Body {
+    let reading = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    let stl = std::fs::read(root.join("data/shapes/filter-cake.stl")).expect("the shape is there");
+    let surface = surface_from_stl(&stl, "", reading).expect("the shape is sound");
+    let sizes = Sizes::parse(diameters, Basis::Number).expect("good diameters");
+    let settings = BodySettings {
+        packing: PackSettings {
+            overlap: 0.25,
+            ..PackSettings::new(sizes)
+        },
+        bonds: BondSettings {
+            range: 1.1,
+            ..BondSettings::default()
+        },
+        particle_density_kg_m3: None,
+        solid_density_kg_m3: None,
+    };
+    make_body(&surface, &settings, &|_, _| Ok(()))
+        .expect("the shape is filled")
+        .body
+}
+
+fn main() {
+    let asked = words();
+    let is_asked = |case: &&Case| match case.diameters {
+        Some(_) => asked.iter().any(|word| word == "fine"),
+        None => asked.is_empty() || asked.iter().any(|word| word == case.name),
+    };
+    let mut table = Table::new();
+    table.row("| scene | steps | bonds broken | run time over simulated time, one thread | times as fast as bonded from the start | two threads: times as fast |");
+    table.row("|---|---|---|---|---|---|");
+    let mut costs: BTreeMap<&str, f64> = BTreeMap::new();
+    for case in CASES.iter().filter(is_asked) {
+        let [one, two] = [1, 2].map(|threads| case.cost(threads));
+        costs.insert(case.name, one.per_s);
+        let beside = case.beside.and_then(|name| costs.get(name));
+        let faster = beside.map_or_else(String::new, |beside| format!("{:.1}", beside / one.per_s));
+        table.row(&format!(
+            "| `{}` | {} | {} | {:.2} | {faster} | {:.2} |",
+            case.name,
+            one.steps,
+            one.broken,
+            one.per_s,
+            one.per_s / two.per_s
+        ));
+    }
+    table.write("process");
+}
