@@ -52,6 +52,7 @@ pub(super) struct Limits<'a> {
     extremes: Option<[f64; 2]>,
     /// None: the step is given by the scene, and kept.
     safety: Option<f64>,
+    impact_accuracy: f64,
     end_s: f64,
     /// None: the step only decreases.
     adaptive: Option<Adaptive<'a>>,
@@ -94,6 +95,7 @@ impl<'a> Limits<'a> {
                 .time_step_s
                 .is_none()
                 .then_some(scene.run.safety_factor),
+            impact_accuracy: scene.run.impact_accuracy,
             end_s: scene.run.end_time_s,
             adaptive: scene.run.adaptive.then(|| Adaptive {
                 scene,
@@ -166,7 +168,7 @@ impl<'a> Limits<'a> {
             let speed_m_s = (2.0 * kinetic_j / state.ledger.mass_kg()).sqrt();
             if speed_m_s > FASTER * progress.impact_speed_m_s {
                 progress.impact_speed_m_s = speed_m_s;
-                let largest_s = impact_step_s(state, speed_m_s, safety);
+                let largest_s = impact_step_s(state, speed_m_s, safety, self.impact_accuracy);
                 self.take(state, largest_s, "speed", progress);
             }
         }
@@ -206,7 +208,7 @@ impl<'a> Limits<'a> {
             let is_unstable =
                 state.time_step_s > adaptive.scene.run.safety_factor * basis.foreseen_s;
             if is_larger || is_unstable || state.time_step_s > SMALLER * basis.step_s {
-                let cause = ("adaptive", Some(basis.limited_by));
+                let cause = ("adaptive", Some(basis.limited_by[0].reason));
                 self.set(state, basis.step_s, cause, progress);
             }
         }
