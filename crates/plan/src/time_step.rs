@@ -82,6 +82,12 @@ pub struct StepBasis {
 }
 
 impl StepBasis {
+    /// Largest adaptive step, s, if a run without `adaptive` takes steps of `plain_s`: no smaller
+    /// one, where it is stable.
+    pub fn step_s_beside(&self, plain_s: f64, safety: f64) -> f64 {
+        self.step_s.max(plain_s.min(safety * self.foreseen_s))
+    }
+
     /// From the present state and, if bodies may be added, `to_come`: see `arriving`.
     pub fn of(scene: &Scene, state: &mut State, to_come: Option<&mut State>) -> Self {
         let run = &scene.run;
@@ -197,11 +203,11 @@ pub(crate) fn choose_step(
 ) -> Result<StepChoice> {
     let run = &scene.run;
     let replaced = StepBasis::of(scene, state, arriving_as_clusters(state).as_mut());
-    let basis = if run.adaptive {
-        StepBasis::of(scene, state, arriving(state).as_mut())
-    } else {
-        replaced
-    };
+    let mut basis = replaced;
+    if run.adaptive {
+        basis = StepBasis::of(scene, state, arriving(state).as_mut());
+        basis.step_s = basis.step_s_beside(replaced.step_s, run.safety_factor);
+    }
     let StepBasis {
         limit, foreseen_s, ..
     } = basis;
@@ -495,13 +501,13 @@ pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64, accuracy: f64) 
 }
 
 /// Fractions of their own limits at which impacts of one sphere and flat landings of clumps are
-/// resolved. A lower accuracy of impacts is none of landings.
+/// resolved: those of landings follow those of impacts.
 fn shares(state: &State, safety: f64, accuracy: f64) -> [f64; 2] {
     let of_impacts = |accuracy: f64| smallest_fraction(state, |law| law.impact_fraction(accuracy));
     let of_landings = smallest_fraction(state, |law| law.landing_fraction());
-    let finer = (of_impacts(accuracy) / of_impacts(IMPACT_ACCURACY)).min(1.0);
+    let coarser = of_impacts(accuracy) / of_impacts(IMPACT_ACCURACY);
     // The factor is exactly 1 at the default safety.
-    [of_impacts(accuracy), finer * of_landings].map(|fraction| safety / SAFETY * fraction)
+    [of_impacts(accuracy), coarser * of_landings].map(|fraction| safety / SAFETY * fraction)
 }
 
 /// The smallest fraction of all contact laws of a scene, 1 at most.

@@ -33,7 +33,7 @@ pub enum InitialOverlap {
 /// Default of `run.safety_factor`.
 pub const SAFETY: f64 = 0.9;
 /// Default of `run.impact_accuracy`.
-pub const IMPACT_ACCURACY: f64 = 0.04;
+pub const IMPACT_ACCURACY: f64 = 0.01;
 
 plain_table! {
     RUN = "[run]";
@@ -66,8 +66,8 @@ plain_table! {
         /// energy over the kinetic energy, and of its restitution. It holds at the default
         /// safety_factor.
         impact_accuracy: f64 = number("impact_accuracy")
-            .within(Included(1e-6), Included(0.16))
-            .remedy("the default is 0.04; finer ones are smaller")
+            .within(Included(1e-6), Included(0.04))
+            .remedy("the default is 0.01; finer ones are smaller")
             .or(IMPACT_ACCURACY);
         /// The automatic step follows the stability limit up as well as down.
         adaptive: bool = flag("adaptive", false);

@@ -64,7 +64,7 @@ pub trait NormalLaw<T: Number> {
 pub trait ImpactLaw {
     /// Largest fraction of its own limit at which an impact of one sphere is resolved so well that
     /// the errors of its energy, over the kinetic energy, and of its restitution are at most
-    /// `accuracy`, 0.16 or less: for any restitution, and any moment within a step at which the ends
+    /// `accuracy`, 0.04 or less: for any restitution, and any moment within a step at which the ends
     /// meet.
     fn impact_fraction(&self, accuracy: f64) -> f64;
 

@@ -230,7 +230,7 @@ fn half_the_safety_halves_the_step_of_impacts() {
             let ratio = found.step.step_s / usual.step.step_s;
             assert!((ratio / fraction - 1.0).abs() < 1e-3, "{fraction}: {ratio}");
             let in_run = [0.9 * fraction, 0.9]
-                .map(|safety| impact_step_s(&found.state, speed_m_s, safety, 0.04));
+                .map(|safety| impact_step_s(&found.state, speed_m_s, safety, 0.01));
             assert!((in_run[0] / in_run[1] / fraction - 1.0).abs() < 1e-14);
         }
     }

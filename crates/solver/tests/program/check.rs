@@ -78,13 +78,13 @@ fn says_what_limits_the_step_and_what_would_next() {
             (limit["reason"].as_str().unwrap().to_owned(), step_s)
         })
     };
-    let [fine, next] = limits("0.01");
+    let [fine, next] = limits("0.0025");
     assert_eq!(
         [&fine.0, &next.0],
         ["impacts foreseen", "flat landings of clumps"]
     );
     // The usual accuracy, and twice its step.
-    let [usual, coarse] = ["0.04", "0.16"].map(|accuracy| limits(accuracy)[0].clone());
+    let [usual, coarse] = ["0.01", "0.04"].map(|accuracy| limits(accuracy)[0].clone());
     let fractions = [usual.1 / fine.1, coarse.1 / usual.1];
     assert!((fractions[0] - 4.0).abs() < 1e-12 && (fractions[1] - 2.0).abs() < 1e-12);
     let text = check(&bench, &[scene]);

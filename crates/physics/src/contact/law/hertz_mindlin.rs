@@ -101,9 +101,9 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
 
 /// Error of the energy of an impact over the square of the fraction of its limit that a step takes.
 /// Bonds vibrate for a long time and conserve their energy on average; a contact does not.
-const ENERGY_ERROR: f64 = 0.64;
+const ENERGY_ERROR: f64 = 0.16;
 /// Error of restitution over that fraction: the coefficient of damping grows within a step.
-const RESTITUTION_ERROR: f64 = 0.16;
+const RESTITUTION_ERROR: f64 = 0.04;
 const LANDING_FRACTION: f64 = 0.1;
 
 impl ImpactLaw for HertzMindlin {

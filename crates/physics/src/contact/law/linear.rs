@@ -98,8 +98,8 @@ fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt:
 
 /// Error of the energy of an impact over the square of the fraction of its limit that a step takes:
 /// the force starts with a jump in slope, that of the dashpot with its full value. The error of
-/// restitution is a third of it at most.
-const ENERGY_ERROR: f64 = 2.56;
+/// restitution is below half of it.
+const ENERGY_ERROR: f64 = 0.64;
 /// The error of the energy grows with the square of the step: it is 2e-3 at 0.05, at the worst
 /// moment within a step at which an impact can begin.
 const LANDING_FRACTION: f64 = 0.034;
