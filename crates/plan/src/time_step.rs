@@ -1,7 +1,8 @@
 //! The time step of a run: the exact limit, the choice, and common estimates for comparison.
 
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Factor, InitialOverlap, SAFETY, Scene, WallMotion};
+use dem_scene::{Factor, IMPACT_ACCURACY, InitialOverlap, SAFETY, Scene, WallMotion};
+use serde::Serialize;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -47,9 +48,20 @@ pub struct StepChoice {
     pub rayleigh_s: f64,
     /// 0.17 sqrt(m/K) (Platzer 2022, eq. 15), s; infinite without bonds.
     pub platzer_eq_15_s: f64,
+    /// What limits an automatic step most, and what would limit it next.
+    pub limited_by: [StepLimit; 2],
     /// Requirements once clumps have become clusters: `step_s` is based on them, unless it is
     /// adaptive.
     pub replaced: StepBasis,
+}
+
+/// A limit of the automatic step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StepLimit {
+    /// Largest step that it allows, s.
+    pub step_s: f64,
+    /// Its reason, in words.
+    pub reason: &'static str,
 }
 
 /// Requirements that the time step must meet.
@@ -65,11 +77,17 @@ pub struct StepBasis {
     pub contact_rate_1_s2: f64,
     /// Largest automatic step, s.
     pub step_s: f64,
-    /// What makes it no larger, in words.
-    pub limited_by: &'static str,
+    /// What limits it most, and what would limit it next.
+    pub limited_by: [StepLimit; 2],
 }
 
 impl StepBasis {
+    /// Largest adaptive step, s, if a run without `adaptive` takes steps of `plain_s`: no smaller
+    /// one, where it is stable.
+    pub fn step_s_beside(&self, plain_s: f64, safety: f64) -> f64 {
+        self.step_s.max(plain_s.min(safety * self.foreseen_s))
+    }
+
     /// From the present state and, if bodies may be added, `to_come`: see `arriving`.
     pub fn of(scene: &Scene, state: &mut State, to_come: Option<&mut State>) -> Self {
         let run = &scene.run;
@@ -105,9 +123,8 @@ impl StepBasis {
         } else {
             [0.0; 2]
         };
-        let share = share_of_impact(state, run.safety_factor);
-        let flat_share = share_of_landing(state, run.safety_factor);
-        let limits = [
+        let [share, flat_share] = shares(state, run.safety_factor, run.impact_accuracy);
+        let mut limits = [
             (run.safety_factor * foreseen_s, "stability"),
             (share * safe_step(k, c), "impacts foreseen"),
             (
@@ -120,16 +137,16 @@ impl StepBasis {
             ),
             (run.end_time_s / 100.0, "the end time"),
             (across, "the way of a particle in a step"),
-        ];
-        let least = limits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        let (step_s, limited_by) = least.unwrap_or(limits[0]);
+        ]
+        .map(|(step_s, reason)| StepLimit { step_s, reason });
+        limits.sort_by(|a, b| a.step_s.total_cmp(&b.step_s));
         Self {
             limit: found,
             foreseen_s,
             impact_speed_m_s,
             contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state, StiffestContacts::ALL)),
-            step_s,
-            limited_by,
+            step_s: limits[0].step_s,
+            limited_by: [limits[0], limits[1]],
         }
     }
 }
@@ -145,13 +162,17 @@ impl StepChoice {
             iterations: 0,
             all_iterations: 0,
         };
+        let end = StepLimit {
+            step_s: end_s,
+            reason: "the end time",
+        };
         let nothing = StepBasis {
             limit,
             foreseen_s: f64::INFINITY,
             impact_speed_m_s: 0.0,
             contact_rate_1_s2: 0.0,
             step_s: end_s,
-            limited_by: "the end time",
+            limited_by: [end; 2],
         };
         Self {
             step_s: end_s,
@@ -162,6 +183,7 @@ impl StepChoice {
             contact_rate_1_s2: 0.0,
             rayleigh_s: f64::INFINITY,
             platzer_eq_15_s: f64::INFINITY,
+            limited_by: [end; 2],
             replaced: nothing,
         }
     }
@@ -181,11 +203,11 @@ pub(crate) fn choose_step(
 ) -> Result<StepChoice> {
     let run = &scene.run;
     let replaced = StepBasis::of(scene, state, arriving_as_clusters(state).as_mut());
-    let basis = if run.adaptive {
-        StepBasis::of(scene, state, arriving(state).as_mut())
-    } else {
-        replaced
-    };
+    let mut basis = replaced;
+    if run.adaptive {
+        basis = StepBasis::of(scene, state, arriving(state).as_mut());
+        basis.step_s = basis.step_s_beside(replaced.step_s, run.safety_factor);
+    }
     let StepBasis {
         limit, foreseen_s, ..
     } = basis;
@@ -238,6 +260,7 @@ pub(crate) fn choose_step(
         contact_rate_1_s2: basis.contact_rate_1_s2,
         rayleigh_s: f64::INFINITY,
         platzer_eq_15_s: platzer_eq_15_s(state),
+        limited_by: basis.limited_by,
         replaced,
     })
 }
@@ -468,33 +491,34 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
     }
 }
 
-/// Largest step that resolves an impact at this speed, m/s, as well as `safety` requires, s;
-/// infinite if nothing can touch.
-pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
+/// Largest step that resolves an impact at this speed, m/s, as well as these require, s; infinite
+/// if nothing can touch.
+pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64, accuracy: f64) -> f64 {
     let [k, c, _] = at_impact(state, speed_m_s);
     let [flat_k, flat_c, _] = at_landing(state, speed_m_s);
-    let of_impact = share_of_impact(state, safety) * safe_step(k, c);
-    of_impact.min(share_of_landing(state, safety) * safe_step(flat_k, flat_c))
+    let [share, flat_share] = shares(state, safety, accuracy);
+    (share * safe_step(k, c)).min(flat_share * safe_step(flat_k, flat_c))
 }
 
-fn share_of_impact(state: &State, safety: f64) -> f64 {
-    smallest_share(state, safety, |law| law.impact_fraction())
+/// Fractions of their own limits at which impacts of one sphere and flat landings of clumps are
+/// resolved: those of landings follow those of impacts.
+fn shares(state: &State, safety: f64, accuracy: f64) -> [f64; 2] {
+    let of_impacts = |accuracy: f64| smallest_fraction(state, |law| law.impact_fraction(accuracy));
+    let of_landings = smallest_fraction(state, |law| law.landing_fraction());
+    let coarser = of_impacts(accuracy) / of_impacts(IMPACT_ACCURACY);
+    // The factor is exactly 1 at the default safety.
+    [of_impacts(accuracy), coarser * of_landings].map(|fraction| safety / SAFETY * fraction)
 }
 
-fn share_of_landing(state: &State, safety: f64) -> f64 {
-    smallest_share(state, safety, |law| law.landing_fraction())
-}
-
-fn smallest_share(state: &State, safety: f64, fraction: fn(&dyn ImpactLaw) -> f64) -> f64 {
+/// The smallest fraction of all contact laws of a scene, 1 at most.
+fn smallest_fraction(state: &State, fraction: impl Fn(&dyn ImpactLaw) -> f64) -> f64 {
     let of_particles = state
         .contacts
         .iter()
         .flat_map(|contacts| &contacts.model.kinds);
     let kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.model.kinds));
     let fractions = kinds.map(|kind| fraction(kind.law.at_impact()));
-    let usual = fractions.fold(1.0, f64::min);
-    // The factor is exactly 1 at the default safety.
-    safety / SAFETY * usual
+    fractions.fold(1.0, f64::min)
 }
 
 /// Coordinate of the deepest corner of a box along `down`, m.

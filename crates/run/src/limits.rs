@@ -52,6 +52,7 @@ pub(super) struct Limits<'a> {
     extremes: Option<[f64; 2]>,
     /// None: the step is given by the scene, and kept.
     safety: Option<f64>,
+    impact_accuracy: f64,
     end_s: f64,
     /// None: the step only decreases.
     adaptive: Option<Adaptive<'a>>,
@@ -94,6 +95,7 @@ impl<'a> Limits<'a> {
                 .time_step_s
                 .is_none()
                 .then_some(scene.run.safety_factor),
+            impact_accuracy: scene.run.impact_accuracy,
             end_s: scene.run.end_time_s,
             adaptive: scene.run.adaptive.then(|| Adaptive {
                 scene,
@@ -166,8 +168,14 @@ impl<'a> Limits<'a> {
             let speed_m_s = (2.0 * kinetic_j / state.ledger.mass_kg()).sqrt();
             if speed_m_s > FASTER * progress.impact_speed_m_s {
                 progress.impact_speed_m_s = speed_m_s;
-                let largest_s = impact_step_s(state, speed_m_s, safety);
-                self.take(state, largest_s, "speed", progress);
+                let largest_s = impact_step_s(state, speed_m_s, safety, self.impact_accuracy);
+                progress.plain.allow_for(speed_m_s, largest_s, FASTER);
+                self.take(
+                    state,
+                    largest_s.max(progress.plain.step_s),
+                    "speed",
+                    progress,
+                );
             }
         }
         let farthest_m = FARTHEST * self.smallest_radius_m;
@@ -202,12 +210,16 @@ impl<'a> Limits<'a> {
             progress.allow_for(&basis);
             progress.bound_strain = largest_strain(&state.bonds, &state.particles.poses);
             progress.strain = progress.bound_strain;
-            let is_larger = basis.step_s >= LARGER * state.time_step_s;
-            let is_unstable =
-                state.time_step_s > adaptive.scene.run.safety_factor * basis.foreseen_s;
-            if is_larger || is_unstable || state.time_step_s > SMALLER * basis.step_s {
-                let cause = ("adaptive", Some(basis.limited_by));
-                self.set(state, basis.step_s, cause, progress);
+            let safety = adaptive.scene.run.safety_factor;
+            let step_s = basis.step_s_beside(progress.plain.step_s, safety);
+            let is_larger = step_s >= LARGER * state.time_step_s;
+            let is_unstable = state.time_step_s > safety * basis.foreseen_s;
+            if is_larger || is_unstable || state.time_step_s > SMALLER * step_s {
+                let limited_by = match step_s > basis.step_s {
+                    true => "the step without adaptive",
+                    false => basis.limited_by[0].reason,
+                };
+                self.set(state, step_s, ("adaptive", Some(limited_by)), progress);
             }
         }
     }
@@ -220,6 +232,7 @@ impl<'a> Limits<'a> {
         cause: &'static str,
         progress: &mut Progress,
     ) {
+        progress.plain.step_s = progress.plain.step_s.min(largest_s);
         if state.time_step_s > largest_s {
             self.set(state, largest_s, (cause, None), progress);
         }

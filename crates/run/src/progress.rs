@@ -18,6 +18,32 @@ use dem_plan::time_step::{StepBasis, StepChoice};
 use dem_results::Balance;
 use dem_rig::record::Record;
 
+/// What a run without `adaptive` would have now.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct PlainStep {
+    /// Its time step, s: an adaptive one is smaller only where it would be unstable.
+    pub(super) step_s: f64,
+    /// Speed of the impacts that this step allows for, m/s.
+    impact_speed_m_s: f64,
+}
+
+impl PlainStep {
+    fn of(basis: &StepBasis) -> Self {
+        Self {
+            step_s: basis.step_s,
+            impact_speed_m_s: basis.impact_speed_m_s,
+        }
+    }
+
+    /// Allows for impacts at a speed, m/s, with this step, s, if they are `faster` than allowed for.
+    pub(super) fn allow_for(&mut self, speed_m_s: f64, largest_s: f64, faster: f64) {
+        if speed_m_s > faster * self.impact_speed_m_s {
+            self.impact_speed_m_s = speed_m_s;
+            self.step_s = self.step_s.min(largest_s);
+        }
+    }
+}
+
 /// Progress of the output of a run, and of its monitors.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
@@ -49,6 +75,7 @@ pub struct Progress {
     pub(super) next_check: u64,
     /// Whether there were bonds at the last check.
     pub(super) had_bonds: bool,
+    pub(super) plain: PlainStep,
     /// Smallest and largest time step so far, s.
     pub(super) steps_s: [f64; 2],
     /// Number of its changes.
@@ -84,6 +111,7 @@ impl Progress {
             contact_rate_1_s2: choice.contact_rate_1_s2,
             impact_speed_m_s: choice.impact_speed_m_s,
             had_bonds: true,
+            plain: PlainStep::of(&choice.replaced),
             steps_s: [choice.step_s; 2],
             ..Self::default()
         }

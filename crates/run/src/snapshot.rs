@@ -91,11 +91,12 @@ impl<'a> Snapshot<'a> {
     /// values of measures that end it, time step, output, and paths of the files of its bodies.
     pub(crate) fn check_scene(&self, scene: &str) -> Result<()> {
         let may_change = |key: &str| {
-            const RUN: [&str; 4] = [
+            const RUN: [&str; 5] = [
                 "run.end_time",
                 "run.rest_energy_ratio",
                 "run.time_step",
                 "run.safety_factor",
+                "run.impact_accuracy",
             ];
             RUN.contains(&key)
                 || key.starts_with("output")
@@ -133,7 +134,7 @@ impl<'a> Snapshot<'a> {
                 "the scene is not that of the run: {}{more}",
                 changed[..changed.len().min(3)].join("; ")
             ),
-            "put it back, or start again without --resume; end_time, rest_energy_ratio, time_step, safety_factor and [output] may change",
+            "put it back, or start again without --resume; end_time, rest_energy_ratio, time_step, safety_factor, impact_accuracy and [output] may change",
         ))
     }
 

@@ -3,3 +3,4 @@
 mod beside_bond;
 mod beside_limit;
 mod dmt_scenes;
+mod impact_accuracy;

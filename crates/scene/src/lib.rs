@@ -92,7 +92,7 @@ pub use region::Region;
 pub use relaxation::Relaxation;
 pub use replacement::{Replacement, Restore, When};
 pub use root::{SCENE_VERSION, Scene};
-pub use run::{InitialOverlap, Integrator, Run, SAFETY};
+pub use run::{IMPACT_ACCURACY, InitialOverlap, Integrator, Run, SAFETY};
 pub use search::Search;
 pub use shape::{BoxShape, CylinderShape, SphereShape};
 pub use sleep::Sleep;

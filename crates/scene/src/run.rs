@@ -32,6 +32,8 @@ pub enum InitialOverlap {
 
 /// Default of `run.safety_factor`.
 pub const SAFETY: f64 = 0.9;
+/// Default of `run.impact_accuracy`.
+pub const IMPACT_ACCURACY: f64 = 0.01;
 
 plain_table! {
     RUN = "[run]";
@@ -60,6 +62,13 @@ plain_table! {
             .within(Excluded(0.0), Excluded(2.0))
             .remedy("a usual value is 0.9")
             .or(SAFETY);
+        /// Largest error of an impact of one sphere for which the automatic step is chosen: of its
+        /// energy over the kinetic energy, and of its restitution. It holds at the default
+        /// safety_factor.
+        impact_accuracy: f64 = number("impact_accuracy")
+            .within(Included(1e-6), Included(0.04))
+            .remedy("the default is 0.01; finer ones are smaller")
+            .or(IMPACT_ACCURACY);
         /// The automatic step follows the stability limit up as well as down.
         adaptive: bool = flag("adaptive", false);
         /// Gravity.
@@ -112,6 +121,14 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
     if let (true, Some(field)) = (run.adaptive, table.get("adaptive")) {
         let problem = "a step that is given stays as it is";
         return Err(field.refuse(problem, "write time_step = \"auto\", or leave adaptive out"));
+    }
+    if let Some(field) = table.get("impact_accuracy") {
+        let problem = format!(
+            "{} is that of the automatic step, and run.time_step gives a step of {step_s} s",
+            field.path
+        );
+        let remedy = "write time_step = \"auto\", or leave impact_accuracy out";
+        return Err(field.refuse(problem, remedy));
     }
     Ok(run)
 }

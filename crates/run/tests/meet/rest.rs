@@ -229,8 +229,8 @@ fn half_the_safety_halves_the_step_of_impacts() {
             // The end time is reached exactly.
             let ratio = found.step.step_s / usual.step.step_s;
             assert!((ratio / fraction - 1.0).abs() < 1e-3, "{fraction}: {ratio}");
-            let in_run =
-                [0.9 * fraction, 0.9].map(|safety| impact_step_s(&found.state, speed_m_s, safety));
+            let in_run = [0.9 * fraction, 0.9]
+                .map(|safety| impact_step_s(&found.state, speed_m_s, safety, 0.01));
             assert!((in_run[0] / in_run[1] / fraction - 1.0).abs() < 1e-14);
         }
     }

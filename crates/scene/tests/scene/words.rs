@@ -15,6 +15,7 @@ run.integrator                  leapfrog
 run.rest_energy_ratio           never
 run.time_step                   auto
 run.safety_factor               0.9
+run.impact_accuracy             0.01
 run.adaptive                    false
 run.gravity                     [0, 0, 0] m/s2
 run.local_damping               0

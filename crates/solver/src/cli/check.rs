@@ -19,6 +19,7 @@ use super::statics;
 use super::trial::Trial;
 use dem_engine::state::State;
 use dem_io::body::mass::mass_lines;
+use dem_plan::time_step::StepLimit;
 use dem_plan::{Plan, PlannedStage};
 use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
@@ -84,6 +85,7 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     }
     let steps = steps(scene, plan);
     let bytes = memory_bytes(&plan.state);
+    let limits = limited_by(plan);
     let trial = Trial::of(scene, plan, steps.first)?;
     let of_stages = |needed: bool| -> Vec<Value> {
         let of_stage = |stage: &PlannedStage| {
@@ -111,6 +113,8 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "limit_s": plan.step.limit.step_s,
                 "limit_at_impact_s": plan.step.foreseen_s,
                 "impact_speed_m_s": plan.step.impact_speed_m_s,
+                "limited_by": limits.map(|[first, _]| first),
+                "next_limit": limits.map(|[_, next]| next),
                 "notes": plan.notes.iter().chain(&trial.notes).collect::<Vec<_>>(),
                 "warnings": plan.warnings.iter().chain(&plan.forecast.warnings).collect::<Vec<_>>(),
                 "first_contacts": plan.forecast.first_contacts,
@@ -285,6 +289,14 @@ fn time_step(plan: &Plan) -> String {
         "no limit, as nothing vibrates".to_owned()
     };
     line("time step", format!("{step} s {why}: {limit}"));
+    if let Some([first, next]) = limited_by(plan) {
+        let [least, more] = [first, next].map(|limit| significant(limit.step_s, 3));
+        let text = format!(
+            "{}: {least} s; next: {}, {more} s",
+            first.reason, next.reason
+        );
+        line("", text);
+    }
     if plan.is_adaptive {
         let replaced = if choice.replaced.step_s < choice.step_s {
             let least = significant(choice.replaced.step_s, 5);
@@ -333,6 +345,11 @@ fn time_step(plan: &Plan) -> String {
         );
     }
     text
+}
+
+/// What limits the step, and what would limit it next. None: the step is given.
+fn limited_by(plan: &Plan) -> Option<[StepLimit; 2]> {
+    (!plan.step.given).then_some(plan.step.limited_by)
 }
 
 /// An estimate of the largest stable step, s, beside the limit.

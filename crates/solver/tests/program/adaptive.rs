@@ -235,3 +235,73 @@ fn who_is_near_is_asked_anew_when_the_step_rises() {
     let fraction = measure(&following, "e") / measure(&falling, "e");
     assert!((fraction - 1.0).abs() < 0.01, "{fraction}");
 }
+
+/// Two clumps fall one after the other through a region in which they are bonded; nothing is hit.
+const IN_AND_OUT: &str = r#"version = 1
+[run]
+end_time = "0.3 s"
+gravity = [0, 0, -9.81]
+[materials.stuff]
+density = 2500
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.25
+[contacts]
+stuff-stuff = { restitution = 0.5, friction = 0.3 }
+[bonds.stiff]
+young_modulus = "1 GPa"
+poisson_ratio = 0.25
+[bodies.first]
+particles = [[0, 0, 0, "1 mm"], ["2 mm", 0, 0, "1 mm"], [0, "2 mm", 0, "1 mm"], ["2 mm", "2 mm", 0, "1 mm"]]
+bond_list = [[0, 1], [0, 2], [1, 3], [2, 3]]
+material = "stuff"
+bonds = "stiff"
+start_as = "clump"
+position = [0, 0, "50 mm"]
+[bodies.second]
+particles = [[0, 0, 0, "1 mm"], ["2 mm", 0, 0, "1 mm"], [0, "2 mm", 0, "1 mm"], ["2 mm", "2 mm", 0, "1 mm"]]
+bond_list = [[0, 1], [0, 2], [1, 3], [2, 3]]
+material = "stuff"
+bonds = "stiff"
+start_as = "clump"
+position = [0, 0, "300 mm"]
+[regions.middle]
+box = { min = [-1, -1, 0], max = [1, 1, "20 mm"] }
+[replacement.first]
+when = { enters = "middle" }
+restore = { leaves = "middle", min_particles = 2 }
+[replacement.second]
+when = { enters = "middle" }
+restore = { leaves = "middle", min_particles = 2 }
+[walls.floor]
+plane = { point = [0, 0, -1], normal = [0, 0, 1] }
+material = "stuff"
+"#;
+
+#[test]
+fn the_step_is_that_of_clumps_whenever_nothing_is_bonded() {
+    let bench = Bench::new();
+    let scene = bench.write("in-and-out.toml", IN_AND_OUT);
+    let plain = summary(&bench, &scene, &[]);
+    let adaptive = ["--set", "run.adaptive=true", "--output", "out"];
+    let following = summary(&bench, &scene, &adaptive);
+    let mut changes = steps_of_events(&bench, "out");
+    // The limit of a bonded body is known to some digits only.
+    changes.retain(|(_, [before_s, after_s])| (before_s / after_s - 1.0).abs() > 0.01);
+    let causes: Vec<&str> = changes.iter().map(|(cause, _)| cause.as_str()).collect();
+    let wanted = ["replacement", "adaptive", "replacement", "adaptive"];
+    assert_eq!(causes, wanted, "{changes:?}");
+    let number = |of: &Value, name: &str| of[name].as_f64().unwrap();
+    let plain_s = number(&plain, "time_step_s");
+    let [first_s, ..] = changes[0].1;
+    for (cause, [before_s, after_s]) in &changes {
+        let [clumps_s, bonded_s] = match cause.as_str() {
+            "replacement" => [before_s, after_s],
+            _ => [after_s, before_s],
+        };
+        // It falls with the speed of what is still to hit the floor.
+        assert!((clumps_s / first_s - 1.0).abs() < 0.1, "{changes:?}");
+        assert!((bonded_s / plain_s - 1.0).abs() < 0.01, "{changes:?}");
+    }
+    assert!(first_s > 5.0 * plain_s, "{changes:?}");
+    assert!(4.0 * number(&following, "steps") < number(&plain, "steps"));
+}

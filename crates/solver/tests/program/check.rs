@@ -23,6 +23,7 @@ fn says_the_step_and_why_stages_memory_and_time() {
     for part in [
         "11 particles, 10 bonds",
         "5.1651e-5 s chosen: 0.9 of the largest stable one",
+        "stability: 5.17e-5 s; next: the end time, 0.04 s",
         "Rayleigh's estimate",
         "active         bond forces: 10 bonds",
         "inactive       gravity: no gravity",
@@ -36,6 +37,7 @@ fn says_the_step_and_why_stages_memory_and_time() {
     let json = check(&bench, &[scene, "--json", "--set", "run.time_step=1e-5"]);
     let value: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(value["time_step_s"], 1e-5);
+    assert!(value["limited_by"].is_null() && value["next_limit"].is_null());
     assert_eq!(value["steps"], 400_000.0);
     let named = |list: &str, name: &str| {
         let all = value[list].as_array().unwrap();
@@ -59,6 +61,34 @@ fn says_the_step_and_why_stages_memory_and_time() {
         assert!(value[number].as_f64().unwrap() > 0.0, "{number} in {json}");
     }
     assert!(bench.files().is_empty());
+}
+
+#[test]
+fn says_what_limits_the_step_and_what_would_next() {
+    let bench = Bench::new();
+    let path = scene_of_data("chute.toml");
+    let scene = path.to_str().unwrap();
+    let limits = |accuracy: &str| {
+        let set = format!("run.impact_accuracy={accuracy}");
+        let json = check(&bench, &[scene, "--json", "--set", &set]);
+        let value: serde_json::Value = serde_json::from_str(&json).unwrap();
+        ["limited_by", "next_limit"].map(|key| {
+            let limit = &value[key];
+            let step_s = limit["step_s"].as_f64().unwrap();
+            (limit["reason"].as_str().unwrap().to_owned(), step_s)
+        })
+    };
+    let [fine, next] = limits("0.0025");
+    assert_eq!(
+        [&fine.0, &next.0],
+        ["impacts foreseen", "flat landings of clumps"]
+    );
+    // The usual accuracy, and twice its step.
+    let [usual, coarse] = ["0.01", "0.04"].map(|accuracy| limits(accuracy)[0].clone());
+    let fractions = [usual.1 / fine.1, coarse.1 / usual.1];
+    assert!((fractions[0] - 4.0).abs() < 1e-12 && (fractions[1] - 2.0).abs() < 1e-12);
+    let text = check(&bench, &[scene]);
+    assert!(text.contains("impacts foreseen: "), "{text}");
 }
 
 #[test]

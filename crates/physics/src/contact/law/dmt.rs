@@ -77,8 +77,8 @@ impl<T: Number> NormalLaw<T> for DerjaguinMullerToporov<T> {
 }
 
 impl ImpactLaw for DerjaguinMullerToporov {
-    fn impact_fraction(&self) -> f64 {
-        self.hertz_mindlin.impact_fraction()
+    fn impact_fraction(&self, accuracy: f64) -> f64 {
+        self.hertz_mindlin.impact_fraction(accuracy)
     }
 
     fn landing_fraction(&self) -> f64 {

@@ -99,15 +99,17 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
     }
 }
 
-/// Fraction of its own limit at which an impact is resolved: at this value a bouncing sphere
-/// conserves its energy to about 3e-3, and at 0.9 to 4e-2 (second order). Bonds vibrate for a long
-/// time and conserve their energy on average; a contact does not.
-const IMPACT_FRACTION: f64 = 0.25;
+/// Error of the energy of an impact over the square of the fraction of its limit that a step takes.
+/// Bonds vibrate for a long time and conserve their energy on average; a contact does not.
+const ENERGY_ERROR: f64 = 0.16;
+/// Error of restitution over that fraction: the coefficient of damping grows within a step.
+const RESTITUTION_ERROR: f64 = 0.04;
 const LANDING_FRACTION: f64 = 0.1;
 
 impl ImpactLaw for HertzMindlin {
-    fn impact_fraction(&self) -> f64 {
-        IMPACT_FRACTION
+    fn impact_fraction(&self, accuracy: f64) -> f64 {
+        let of_energy = (accuracy / ENERGY_ERROR).sqrt();
+        of_energy.min(accuracy / RESTITUTION_ERROR)
     }
 
     fn landing_fraction(&self) -> f64 {

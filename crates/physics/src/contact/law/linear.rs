@@ -96,16 +96,17 @@ fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt:
     one + more - overlap_before_m.if_positive(more)
 }
 
-/// Fraction of its own limit at which an impact is resolved: the force starts with a jump in slope.
-/// Restitution is then accurate to 1 %, and to 4 % at twice the step.
-const IMPACT_FRACTION: f64 = 0.125;
+/// Error of the energy of an impact over the square of the fraction of its limit that a step takes:
+/// the force starts with a jump in slope, that of the dashpot with its full value. The error of
+/// restitution is below half of it.
+const ENERGY_ERROR: f64 = 0.64;
 /// The error of the energy grows with the square of the step: it is 2e-3 at 0.05, at the worst
 /// moment within a step at which an impact can begin.
 const LANDING_FRACTION: f64 = 0.034;
 
 impl ImpactLaw for Linear {
-    fn impact_fraction(&self) -> f64 {
-        IMPACT_FRACTION
+    fn impact_fraction(&self, accuracy: f64) -> f64 {
+        (accuracy / ENERGY_ERROR).sqrt()
     }
 
     fn landing_fraction(&self) -> f64 {
