@@ -9,6 +9,7 @@ pub mod clump_touches;
 pub mod clumps;
 pub mod clusters;
 pub mod contacts;
+pub mod damping_memory;
 pub mod damping_rate;
 pub mod events;
 pub mod islands;
@@ -43,6 +44,7 @@ use self::bridges::Bridges;
 use self::clumps::Clumps;
 use self::clusters::Clusters;
 use self::contacts::{ContactPartition, Contacts};
+use self::damping_memory::DampingMemory;
 use self::damping_rate::damping_rate_1_s;
 use self::ledger::EnergyLedger;
 use self::loads::GroupLoad;
@@ -113,6 +115,8 @@ pub struct State {
     /// Running means of these forces, from which those of the next step are predicted where one
     /// stage is enough for more than weak damping. Empty: they have not been needed.
     pub mean_resistance: Vec<Wrench>,
+    /// What damping of bonds in one stage remembers beyond that.
+    pub damping_memory: DampingMemory,
     /// Largest speed of a particle in the previous step, plus that of a wall if there are contacts,
     /// m/s.
     pub fastest_m_s: f64,
@@ -164,6 +168,7 @@ impl State {
             most_damping_rate_1_s: f64::INFINITY,
             bond_resistance: Vec::new(),
             mean_resistance: Vec::new(),
+            damping_memory: DampingMemory::default(),
             fastest_m_s: 0.0,
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
@@ -202,6 +207,7 @@ impl State {
         if !self.mean_resistance.is_empty() {
             self.mean_resistance = self.bond_resistance.clone();
         }
+        self.damping_memory.clear();
         let scratch = &mut self.scratch;
         scratch.damping_now = vec![[0.0; 4]; structural];
         scratch.damping_stages = std::array::from_fn(|_| vec![Wrench::default(); damped]);
@@ -294,12 +300,15 @@ impl State {
         // Bonds that broke since it was found still count.
         let damping_rate_1_s = self.damping_rate_1_s;
         let damped = [&mut self.bond_resistance, &mut self.mean_resistance].map(std::mem::take);
+        let memory = std::mem::take(&mut self.damping_memory);
         self.divide();
         self.damping_rate_1_s = damping_rate_1_s;
         let free = self.bond_resistance.len();
         [self.bond_resistance, self.mean_resistance] = damped;
+        self.damping_memory = memory;
         let means = self.mean_resistance.len();
-        if self.bond_resistance.len() != free || (means > 0 && means != free) {
+        let means_fit = means == 0 || means == free;
+        if self.bond_resistance.len() != free || !means_fit || !self.damping_memory.fits(free) {
             return None;
         }
         self.particles.wrenches = vec![Wrench::default(); self.particles.len()];

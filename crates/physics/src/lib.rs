@@ -8,6 +8,7 @@ pub mod dual;
 pub mod geometry;
 pub mod lanes;
 pub mod number;
+pub mod remembered;
 pub mod rigid;
 pub mod rotation;
 pub mod shape;

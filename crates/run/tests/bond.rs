@@ -1,5 +1,6 @@
 //! Bonds of a state compared with closed forms, and their energy.
 
+mod damping_memory;
 mod damping_order;
 mod flat_joint;
 mod lanes;

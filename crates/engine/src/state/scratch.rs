@@ -35,6 +35,8 @@ pub struct Scratch {
     /// Impulses of the damping of bonds after the last stage but one and the last, N s and N m s;
     /// its forces in the first stage, N and N m. Length as [`super::State::bond_resistance`].
     pub damping_stages: [Vec<Wrench>; 3],
+    /// Passes of damping over the bonds so far.
+    pub damping_passes: u64,
     /// The largest eigenvalue of the last step, and the factors of stages for it.
     pub stages: Option<(f64, Chebyshev)>,
     /// For each chunk of free particles the distance that the fastest of them moved in the last

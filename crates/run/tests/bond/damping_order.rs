@@ -13,6 +13,7 @@ use dem_engine::state::bonds::BondRule;
 use dem_engine::step::step;
 use dem_physics::bond::stiffness::BondModel;
 use dem_physics::chebyshev::{Chebyshev, limit};
+use dem_physics::remembered::MOST;
 
 /// Positions of all particles after `end_s`, in `steps` steps. Each has the stages for eigenvalues
 /// up to `most`: the bound of damping that asks for them is higher than that of the bonds.
@@ -44,12 +45,13 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 /// with one, in steps short enough for it, with the fewest others and with more.
 fn assert_second_order(name: &str, start: &State, end_s: f64, steps: u32) {
     let largest = end_s / f64::from(steps) * start.damping_rate_1_s;
-    let fewest = Chebyshev::covering(largest).others.len() + 1;
+    let fewest = Chebyshev::covering(largest.max(MOST)).others.len() + 1;
     let enough = |most: f64| (1.01 * end_s * start.damping_rate_1_s / most).ceil() as u32;
     // A mean of some three steps needs twice as many for the same next term of the error.
     for (stages, most, finer) in [
         ("one stage".to_owned(), WEAK, 1),
         ("one stage with a mean".to_owned(), ONE_STAGE, 2),
+        ("one stage with a memory".to_owned(), MOST, 2),
         (format!("{fewest} stages"), limit(fewest), 1),
         (format!("{} stages", fewest + 1), limit(fewest + 1), 1),
         (format!("{} stages", fewest + 3), limit(fewest + 3), 1),
@@ -110,7 +112,7 @@ fn one_stage_is_stable_up_to_the_undamped_limit() {
     let limit_s = step_limit(&mut start).step_s;
     let kinetic_j =
         |state: &State| kinetic_energy(&state.particles, |i| state.particles.motions[i]);
-    for most in [WEAK, ONE_STAGE] {
+    for most in [WEAK, ONE_STAGE, MOST] {
         damp(&mut start, BondDamping::Chen(0.01));
         let eta = 0.01 * 0.98 * most / (limit_s * start.damping_rate_1_s);
         damp(&mut start, BondDamping::Chen(eta));

@@ -24,6 +24,12 @@
 //! which is of second order as well, and stable up to 1 + q instead of 1. Here q follows from the
 //! largest eigenvalue: see `memory`.
 //!
+//! Beyond that, up to [`MOST`], one stage with a longer memory is enough: D_n = -C y_n, where the
+//! velocities y_n follow from w, the last three y and the last three D (`physics/remembered.rs`).
+//! What is remembered is velocities and, in their prediction only, forces: so that D_n keeps both
+//! momenta. It begins, and begins anew once what it holds is of other particles, with a step by
+//! stages. Stronger damping takes the stages in every step.
+//!
 //! **Stability.** With symmetric K and C the scheme is stable up to the same step as without
 //! damping of bonds. With B = (1 + R)/2 and A = dt^2 M^-1 K, z^n u is a solution if
 //!
@@ -39,9 +45,15 @@
 //!
 //! For g below 1 + q, f has no pole outside the unit circle, and its imaginary part has the sign of
 //! that of z there, as it has on the circle (where it is at least g |Im z|); for real z it is
-//! positive beyond 1 and below -4 beyond -1. So a between 0 and 4 leaves no z outside. Dashpots of
-//! contacts, which F contains with the velocity of half a step ago, change the last condition
-//! alone: see [`crate::check::limit`].
+//! positive beyond 1 and below -4 beyond -1. So a between 0 and 4 leaves no z outside. The same
+//! holds with the longer memory, where
+//!
+//!   f(z, g) = (z - 1)^2 / z + g (z^2 - 1) / (2 z N(1/z)):
+//!
+//! N, see there, has a positive real part on the unit circle, and hence outside, where f has no
+//! pole, and Im f, g Im z Re 1/N on the circle, has the sign of Im z. Dashpots of contacts, which F
+//! contains with the velocity of half a step ago, change the last condition alone: see
+//! [`crate::check::limit`].
 //!
 //! With coefficients that change from step to step, as those of structural damping, the first proof
 //! fails, but not its result: with the synchronous velocities v_n, the other forces keep
@@ -64,6 +76,7 @@ use crate::state::State;
 use crate::state::bonds::BondRule;
 use crate::state::particles::{Motion, Wrench};
 use dem_physics::chebyshev::Chebyshev;
+use dem_physics::remembered::{MOST, Remembered};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const BOND_DAMPING_NS: f64 = 43.3;
@@ -71,7 +84,7 @@ const BOND_DAMPING_NS: f64 = 43.3;
 /// Largest eigenvalue of G up to which one stage needs no running mean.
 pub const WEAK: f64 = 2.88 / 3.4;
 
-/// Largest eigenvalue of G up to which damping takes one stage.
+/// Largest eigenvalue of G up to which damping takes one stage with a mean at most.
 pub const ONE_STAGE: f64 = 1.43;
 
 /// The same where coefficients change from step to step.
@@ -85,6 +98,7 @@ pub const BOND_DAMPING: Stage = Stage {
         size_of_val(&state.bonds.damping[..])
             + size_of_val(&state.bond_resistance[..])
             + size_of_val(&state.mean_resistance[..])
+            + state.damping_memory.bytes()
             + stages.map(|stage| size_of_val(&stage[..])).sum::<usize>()
             + predicted
                 .map(|motions| size_of_val(&motions[..]))
@@ -92,7 +106,7 @@ pub const BOND_DAMPING: Stage = Stage {
     },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
-        // Without the running mean, which not all need.
+        // Without the running mean and the memory, which not all need.
         let of_particle = 4 * size_of::<Wrench>() + 2 * size_of::<Motion>();
         Some(Saving {
             bytes: of_bonds.bytes + state.particles.free * of_particle,
@@ -134,6 +148,10 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
         } else {
             ONE_STAGE
         };
+    let is_remembered = !is_one_stage && !changes && largest <= MOST;
+    if !is_remembered {
+        state.damping_memory.clear();
+    }
     if is_one_stage {
         // Structural damping has predicted them already.
         if state.scratch.damping_now.is_empty() {
@@ -142,8 +160,13 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
         let mut force = std::mem::take(&mut state.bond_resistance);
         damp(state, 0, &mut force);
         state.bond_resistance = force;
+    } else if is_remembered && !state.damping_memory.is_empty() {
+        damp_as_remembered(state, &Remembered::covering(largest));
     } else {
         damp_in_stages(state, largest);
+        if is_remembered {
+            begin_memory(state);
+        }
     }
     remember(state, if is_one_stage { memory(largest) } else { 0.0 });
     state.scratch.structural_share = structural_share(state);
@@ -169,12 +192,73 @@ fn remember(state: &mut State, memory: f64) {
     });
 }
 
+/// Damps in one stage, with the memory of the last steps.
+fn damp_as_remembered(state: &mut State, factors: &Remembered) {
+    let last = std::mem::take(&mut state.bond_resistance);
+    let mut memory = std::mem::take(&mut state.damping_memory);
+    let mut expected = std::mem::take(&mut state.scratch.damping_stages[0]);
+    let [second, mut third] = memory.forces;
+    let lists: [&[Wrench]; 3] = [&last, &second, &third];
+    let others = [0, 1, 2].map(|k| (factors.damping[k], lists[k]));
+    let asleep = &state.particles.asleep;
+    let chunks = expected.par_chunks_mut(CHUNK).enumerate();
+    chunks.for_each(|(chunk, expected)| {
+        for_each_awake(chunk * CHUNK, expected, asleep, |i, expected| {
+            *expected = sum(expected, 0.0, others, i);
+        });
+    });
+    predict(state, &expected);
+    state.scratch.damping_stages[0] = expected;
+    let earlier = &memory.motions;
+    let (predicted, asleep) = (&mut state.scratch.predicted[0], &state.particles.asleep);
+    let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
+    chunks.for_each(|(chunk, predicted)| {
+        for_each_awake(chunk * CHUNK, predicted, asleep, |i, motion| {
+            for k in 0..3 {
+                let mut velocity_m_s = factors.present * motion.velocity_m_s[k];
+                let mut spin_rad_s = factors.present * motion.spin_rad_s[k];
+                for (factor, earlier) in factors.velocities.iter().zip(earlier) {
+                    velocity_m_s += factor * earlier[i].velocity_m_s[k];
+                    spin_rad_s += factor * earlier[i].spin_rad_s[k];
+                }
+                motion.velocity_m_s[k] = velocity_m_s;
+                motion.spin_rad_s[k] = spin_rad_s;
+            }
+        });
+    });
+    damp(state, 0, &mut third);
+    memory.motions.rotate_right(1);
+    std::mem::swap(&mut memory.motions[0], &mut state.scratch.predicted[0]);
+    memory.forces = [last, second];
+    state.bond_resistance = third;
+    state.damping_memory = memory;
+}
+
+/// Begins the memory with this step, as if the steps before had been as it is.
+fn begin_memory(state: &mut State) {
+    let of_bonds = std::mem::take(&mut state.bond_resistance);
+    predict(state, &of_bonds);
+    state.bond_resistance = of_bonds;
+    for i in 0..state.particles.free {
+        if state.particles.sleeps(i) {
+            state.scratch.predicted[0][i] = Motion::default();
+        }
+    }
+    let memory = &mut state.damping_memory;
+    for motions in &mut memory.motions {
+        motions.clone_from(&state.scratch.predicted[0]);
+    }
+    for forces in &mut memory.forces {
+        forces.clone_from(&state.bond_resistance);
+    }
+}
+
 fn damp_in_stages(state: &mut State, largest: f64) {
     let kick_s = state.kick_s();
     let known = state.scratch.stages.take();
     let known = known.filter(|(covered, _)| *covered == largest);
     let (_, stages) = known.unwrap_or_else(|| (largest, Chebyshev::covering(largest)));
-    predict(state, Prediction::Undamped);
+    predict(state, &[]);
     let mut force = std::mem::take(&mut state.bond_resistance);
     let [mut before, mut now, mut first] = std::mem::take(&mut state.scratch.damping_stages);
     damp(state, 0, &mut first);
@@ -209,19 +293,14 @@ fn damp_in_stages(state: &mut State, largest: f64) {
     state.scratch.stages = Some((largest, stages));
 }
 
-/// Which damping of bonds a prediction counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Prediction {
-    /// None.
-    Undamped,
-    /// That of the last step, or the running mean.
-    AsDampedBefore,
-}
-
 /// Predicts the motions of the free particles at the time of their poses, with the damping of bonds
 /// of the last step, or its running mean if that is not weak.
 pub(super) fn predict_as_damped_before(state: &mut State) {
-    predict(state, Prediction::AsDampedBefore);
+    let means = std::mem::take(&mut state.mean_resistance);
+    let last = std::mem::take(&mut state.bond_resistance);
+    predict(state, if means.is_empty() { &last } else { &means });
+    state.mean_resistance = means;
+    state.bond_resistance = last;
 }
 
 /// Part of what damping of bonds takes in this step that structural damping takes: all but what the
@@ -234,7 +313,7 @@ fn structural_share(state: &mut State) -> f64 {
         return 1.0;
     }
     let half_s = 0.5 * state.kick_s();
-    predict(state, Prediction::Undamped);
+    predict(state, &[]);
     let of_bonds = std::mem::take(&mut state.bond_resistance);
     let mut viscous = std::mem::take(&mut state.scratch.damping_stages[0]);
     go_on(state, &mut viscous, 0.0, [(half_s, &of_bonds)]);
@@ -258,19 +337,13 @@ fn structural_share(state: &mut State) -> f64 {
     }
 }
 
-/// Predicts the motions of the free particles at the time of their poses.
-fn predict(state: &mut State, prediction: Prediction) {
+/// Predicts the motions of the free particles at the time of their poses, with this damping of
+/// bonds, one for each or none.
+fn predict(state: &mut State, of_bonds: &[Wrench]) {
     let half_s = 0.5 * state.previous_time_step_s;
     let mut predicted = std::mem::take(&mut state.scratch.predicted[0]);
     let p = &state.particles;
-    let [of_last_step, on_particles] = state.resistances();
-    let has_mean = !state.mean_resistance.is_empty();
-    let of_bonds = match prediction {
-        Prediction::Undamped => &[],
-        Prediction::AsDampedBefore if has_mean => &state.mean_resistance[..],
-        Prediction::AsDampedBefore => of_last_step,
-    };
-    let resisting = [of_bonds, on_particles];
+    let resisting = [of_bonds, &state.scratch.particle_resistance];
     let forces = Forces::of(p, resisting, state.model.gravity_m_s2, half_s);
     predicted.resize(p.free, Motion::default());
     let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
@@ -348,6 +421,7 @@ fn add_multiple(sum: &mut Wrench, factor: f64, wrench: &Wrench) {
 /// Sets `forces` to the damping of bonds between ends with the motions of this stage.
 fn damp(state: &mut State, stage: usize, forces: &mut [Wrench]) {
     let scratch = &mut state.scratch;
+    scratch.damping_passes += 1;
     let coefficients = match scratch.damping_now.is_empty() {
         true => &state.bonds.damping,
         false => &scratch.damping_now,

@@ -497,6 +497,7 @@ pub(crate) fn count_sleepers(state: &mut State) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;
     };
+    state.damping_memory.clear();
     let p = &mut state.particles;
     sleep.bodies = sleep.of_cluster.iter().filter(|body| body.asleep).count();
     let asleep: Vec<bool> = match sleep.bodies {
