@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::riding::box_around;
 use crate::stages::chunks::{chunk_of, chunks_of};
-use crate::stages::clumps::motion::place_all;
+use crate::stages::clumps::motion::{place_all, place_awake};
 use crate::stages::search::neighbours::near_pairs;
 use crate::stages::walls::carrying::{
     BeltFace, carrying_velocity_m_s, is_belt, steady_velocity_m_s,
@@ -115,12 +115,14 @@ pub(super) fn at_rest_together(state: &mut State, may: Vec<bool>) -> (Vec<u32>, 
     if !candidates.may.contains(&true) {
         return none;
     }
-    // Few candidates get this far: only now are all neighbours searched for.
-    place_all(&state.clumps, &mut state.particles);
+    // Few candidates get this far: only now are their spheres put in place.
+    place_awake(&state.clumps, &mut state.particles);
     candidates.look_at_near_walls(state);
     if !candidates.may.contains(&true) {
         return none;
     }
+    // And only now are all neighbours searched for.
+    place_all(&state.clumps, &mut state.particles);
     let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
         return none;
     };

@@ -4,12 +4,13 @@
 use nalgebra::Vector3;
 
 use crate::stages::chunks::chunk_of;
-use crate::stages::clumps::motion::{place_all, place_spheres};
+use crate::stages::clumps::motion::place_spheres;
 use crate::stages::search::neighbours::near_pairs;
 use crate::stages::walls::carrying::{carrying_velocity_m_s, is_belt, steady_velocity_m_s};
 use crate::stages::walls::{nearness, plane_in_space};
 use crate::state::State;
-use crate::state::particles::Pose;
+use crate::state::clumps::Clumps;
+use crate::state::particles::{Particles, Pose};
 use crate::state::search::balls::around;
 use crate::state::sleep::{Rider, Sleep};
 use crate::state::walls::Wall;
@@ -51,11 +52,29 @@ pub(crate) fn drift_riders(state: &mut State) -> usize {
     }
     let riders = sleep.riders.len();
     let turns = |wall: &Wall| wall.spins_rad_s[1] != [0.0; 3];
-    // Measures and walls that turn need all places in every step.
-    if !state.watches.is_empty() || state.walls.iter().any(turns) {
-        place_all(&state.clumps, &mut state.particles);
+    if state.walls.iter().any(turns) {
+        // How fast a wall turns where particles are is found from all of them.
+        for clump in state.clumps.all.iter().filter(|clump| clump.rides()) {
+            place_spheres(&state.clumps, clump, &mut state.particles);
+        }
+    } else if !state.watches.is_empty() {
+        place_touching(sleep, &state.clumps, &mut state.particles);
     }
     riders
+}
+
+/// Puts the spheres of riders in place that touch another sleeping particle.
+fn place_touching(sleep: &Sleep, clumps: &Clumps, particles: &mut Particles) {
+    for i in sleep.pairs.iter().flat_map(|kept| kept.pair) {
+        let carrier = clumps.carrier_of(i as usize);
+        let carrier = carrier.map(|at| &clumps.all[at]);
+        if let Some(clump) = carrier.filter(|clump| clump.rides()) {
+            let template = clumps.template(clump);
+            let sphere = template.outer[(i - clump.first) as usize] as usize;
+            let place = template.pose(sphere, clump).place();
+            particles.poses[i as usize].put_at(place.into());
+        }
+    }
 }
 
 /// Uses up the distance that riders may approach what does not move steadily, in a drift in which
