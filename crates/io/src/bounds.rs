@@ -102,9 +102,8 @@ impl Bounds {
     /// in common, infinite if they never have.
     pub fn meets_after_s(&self, velocity_m_s: [f64; 3], other: &Self) -> f64 {
         let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
-        for k in 0..3 {
+        for (k, along) in velocity_m_s.into_iter().enumerate() {
             let (low, high) = (other.low[k] - self.high[k], other.high[k] - self.low[k]);
-            let along = velocity_m_s[k];
             if along != 0.0 {
                 enters = enters.max((low / along).min(high / along));
                 leaves = leaves.min((low / along).max(high / along));
