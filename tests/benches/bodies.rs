@@ -45,6 +45,8 @@ enum Doing {
     LyingAsClumps,
     /// They ride on a belt as rigid clumps.
     RidingAsClumps,
+    /// The same, asleep.
+    RidingAsleep,
     /// They fly as rigid clumps.
     FlyingAsClumps,
     /// They fly bonded.
@@ -53,7 +55,7 @@ enum Doing {
     Broken,
 }
 
-const CASES: [(Doing, &str); 8] = [
+const CASES: [(Doing, &str); 9] = [
     (Doing::Waiting, "wait in an inlet"),
     (Doing::Asleep, "lie on a floor, asleep"),
     (
@@ -62,15 +64,24 @@ const CASES: [(Doing, &str); 8] = [
     ),
     (Doing::LyingAsClumps, "lie on a floor, as clumps"),
     (Doing::RidingAsClumps, "ride on a belt, as clumps"),
+    (Doing::RidingAsleep, "ride on a belt, asleep"),
     (Doing::FlyingAsClumps, "fly as clumps"),
     (Doing::Bonded, "fly, bonded"),
     (Doing::Broken, "fly, broken into spheres"),
 ];
 
+/// Whether the bodies sleep.
+fn is_asleep(doing: Doing) -> bool {
+    matches!(
+        doing,
+        Doing::Asleep | Doing::AsleepInTheWay | Doing::RidingAsleep
+    )
+}
+
 /// The scene: bodies of one kind, and `flying` bonded ones above them.
 fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
-    let sleeps = matches!(doing, Doing::Asleep | Doing::AsleepInTheWay);
-    let rides = doing == Doing::RidingAsClumps;
+    let sleeps = is_asleep(doing);
+    let rides = matches!(doing, Doing::RidingAsClumps | Doing::RidingAsleep);
     let lies = sleeps || rides || doing == Doing::LyingAsClumps;
     let gravity = if lies { "-9.81" } else { "0" };
     // Bodies above a floor fall less than a tenth of their size in the rounds.
@@ -98,7 +109,9 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
     };
     let motion = match doing {
         Doing::LyingAsClumps => "start_as = \"clump\"\n",
-        Doing::RidingAsClumps => "start_as = \"clump\"\nvelocity = [1, 0, 0]\n",
+        Doing::RidingAsClumps | Doing::RidingAsleep => {
+            "start_as = \"clump\"\nvelocity = [1, 0, 0]\n"
+        }
         Doing::FlyingAsClumps => "start_as = \"clump\"\nangular_velocity = [1, 0, 0]\n",
         Doing::Broken => "angular_velocity = [20, 15, 10]\n",
         Doing::Waiting | Doing::Asleep | Doing::AsleepInTheWay => "",
@@ -179,7 +192,7 @@ fn planned(doing: Doing, bodies: usize, flying: usize) -> State {
 fn state(doing: Doing, bodies: usize, flying: usize) -> State {
     let mut state = planned(doing, bodies, flying);
     let is_ready = |state: &State| match doing {
-        Doing::Asleep | Doing::AsleepInTheWay => {
+        _ if is_asleep(doing) => {
             (state.sleep.as_ref()).is_some_and(|sleep| sleep.particles >= 27 * bodies)
         }
         Doing::Broken => state.broken_count as usize == 54 * bodies,

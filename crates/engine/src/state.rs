@@ -404,6 +404,19 @@ impl State {
         contacts.map_or(&[], |contacts| &contacts.scratch.partitions)
     }
 
+    /// Whether particle `i` sleeps and does not ride.
+    pub(crate) fn rests_asleep(&self, i: usize) -> bool {
+        let (Some(sleep), Some(clusters)) = (&self.sleep, &self.clusters) else {
+            return false;
+        };
+        self.particles.sleeps(i) && sleep.rests(clusters.of_particle[i])
+    }
+
+    /// The time and the length of the step that begins at it, s.
+    pub(crate) fn moment(&self) -> [f64; 2] {
+        [self.time_s, self.time_step_s]
+    }
+
     /// The previous step and the next, s.
     pub fn steps_s(&self) -> [f64; 2] {
         [self.previous_time_step_s, self.time_step_s]

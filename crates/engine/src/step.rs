@@ -36,6 +36,7 @@ use crate::stages::motion::kick_and_drift::{
 };
 use crate::stages::motion::loads::{LOADS, apply_loads};
 use crate::stages::motion::local_damping::{PARTICLE_DAMPING, compute_particle_damping};
+use crate::stages::motion::riding::drift_riders;
 use crate::stages::motion::sleep::{SLEEP, update_sleep};
 use crate::stages::motion::supports::{SUPPORTS, hold_supports, remember_held};
 use crate::stages::population::absorbed_energy::{DAUGHTERS, take_in_energy};
@@ -111,6 +112,7 @@ const EXCHANGE: &[Part] = &[
 /// Everything moves on.
 const DRIFT: &[Part] = &[
     (&SLEEP, update_sleep),
+    (&SLEEP, drift_riders),
     (&MOTION, drift_particles),
     (&RIGID_PARTS, drift_rigid_parts),
     (&CLUMPS, drift_clumps),

@@ -80,6 +80,44 @@ impl Bounds {
         Vector3::from(apart).norm()
     }
 
+    /// Distance between two boxes, m; 0 if they have a point in common.
+    pub fn gap_m(&self, other: &Self) -> f64 {
+        let apart = [0, 1, 2].map(|k| {
+            let apart = (self.low[k] - other.high[k]).max(other.low[k] - self.high[k]);
+            apart.max(0.0)
+        });
+        Vector3::from(apart).norm()
+    }
+
+    /// The box at another place.
+    #[must_use]
+    pub fn moved(&self, by: [f64; 3]) -> Self {
+        Self {
+            low: [0, 1, 2].map(|k| self.low[k] + by[k]),
+            high: [0, 1, 2].map(|k| self.high[k] + by[k]),
+        }
+    }
+
+    /// Time until the box, moving at this velocity, m/s, meets another, s: 0 if they have a point
+    /// in common, infinite if they never have.
+    pub fn meets_after_s(&self, velocity_m_s: [f64; 3], other: &Self) -> f64 {
+        let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
+        for (k, along) in velocity_m_s.into_iter().enumerate() {
+            let (low, high) = (other.low[k] - self.high[k], other.high[k] - self.low[k]);
+            if along != 0.0 {
+                enters = enters.max((low / along).min(high / along));
+                leaves = leaves.min((low / along).max(high / along));
+            } else if low > 0.0 || high < 0.0 {
+                return f64::INFINITY;
+            }
+        }
+        if enters <= leaves {
+            enters
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// Whether a segment comes within `reach` of the box, along each axis.
     pub fn on_segment(&self, [start, end]: [Vector3<f64>; 2], reach: f64) -> bool {
         let (mut near, mut far) = (0.0_f64, 1.0_f64);

@@ -4,6 +4,7 @@ mod again;
 mod books;
 mod lists;
 mod restless;
+mod riding;
 mod settle;
 mod wake;
 

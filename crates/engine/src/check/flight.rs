@@ -73,20 +73,28 @@ pub fn standing_bodies(state: &State, bodies: &[PlacedBody]) -> Vec<FreeBody> {
     let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
     let moved: BTreeSet<u32> = moved.chain(loaded).collect();
     let bound = bound_particles(state);
-    let is_bound = |i: &u32| bound.contains(i) || state.particles.sleeps(*i as usize);
+    let p = &state.particles;
+    let is_bound = |i: &u32| bound.contains(i) || p.sleeps(*i as usize);
+    let rides = |i: u32| p.sleeps(i as usize) && p.motions[i as usize].velocity_m_s != [0.0; 3];
     let of_bodies = bodies.iter().filter_map(|body| {
         let living = body.particles.iter().copied();
         let living: Vec<u32> = living.filter(|i| *i != REMOVED).collect();
         living.iter().any(is_bound).then(|| {
             let mut standing = FreeBody::of_particles(state, &body.name, &living);
-            if living.iter().any(|i| moved.contains(i)) {
+            if living.iter().any(|i| moved.contains(i) || rides(*i)) {
                 standing.reach_m = f64::INFINITY;
             }
             standing
         })
     });
     let asleep = state.clumps.all.iter().filter(|clump| clump.asleep);
-    let of_clumps = asleep.map(|clump| FreeBody::of_clump(state, clump));
+    let of_clumps = asleep.map(|clump| {
+        let mut standing = FreeBody::of_clump(state, clump);
+        if clump.rides() {
+            standing.reach_m = f64::INFINITY;
+        }
+        standing
+    });
     let mut standing: Vec<FreeBody> = of_bodies.chain(of_clumps).collect();
     for body in &mut standing {
         body.velocity_m_s = Vector3::zeros();

@@ -3,5 +3,7 @@
 pub mod kick_and_drift;
 pub mod loads;
 pub mod local_damping;
+pub(crate) mod resting;
+pub(crate) mod riding;
 pub(crate) mod sleep;
 pub mod supports;

@@ -1,5 +1,6 @@
 //! Walls: their motion, and their contacts with particles.
 
+pub(crate) mod carrying;
 mod driven;
 pub mod joints;
 mod meeting;
@@ -12,7 +13,7 @@ use self::joints::join_walls;
 use self::meeting::Place;
 pub use self::motion::fastest_point_m_s;
 pub(crate) use self::motion::{
-    drift_walls, has_moved, plan_wall_motions, surface_velocity_m_s, will_move,
+    drift_walls, has_moved, moves, plan_wall_motions, surface_velocity_m_s, will_move,
 };
 use super::chunks::{chunk_of, chunks_of, in_tasks};
 use super::stage::{Need, Stage};

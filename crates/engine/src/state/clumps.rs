@@ -271,6 +271,11 @@ impl Template {
 }
 
 impl Clump {
+    /// Whether it sleeps on a surface that carries it along.
+    pub(crate) fn rides(&self) -> bool {
+        self.asleep && self.velocity_m_s != [0.0; 3]
+    }
+
     /// Spin, rad/s.
     pub fn spin_rad_s(&self, template: &Template) -> Vector3<f64> {
         spin_rad_s(&self.turned, self.angular_momentum, template.moments_kg_m2).into()

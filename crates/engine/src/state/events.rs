@@ -161,7 +161,8 @@ pub struct SleepEvent {
     pub time_s: f64,
     /// `asleep` or `awake`.
     pub kind: &'static str,
-    /// Cause: `rest`; `near` something that moves; `changed` into something else, or removed.
+    /// Cause: `rest`; `near` something that moves, or that a rider approaches; at the `edge` of a
+    /// belt; `changed` into something else, or removed.
     pub cause: &'static str,
     /// Number of bodies.
     pub bodies: usize,

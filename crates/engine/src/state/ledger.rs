@@ -47,6 +47,8 @@ pub struct EnergyLedger {
     /// The same two for sleeping bodies, on which gravity does not act.
     pub(crate) asleep_kg: f64,
     pub(crate) asleep_moment: [f64; 3],
+    /// Momentum of those that ride, N s.
+    pub(crate) asleep_momentum: [f64; 3],
     /// Expected momentum and angular momentum, N s and N m s.
     pub(crate) momentum: [f64; 3],
     pub(crate) angular_momentum: [f64; 3],
@@ -156,22 +158,33 @@ impl EnergyLedger {
         }
     }
 
-    /// Sets the sleeping bodies: masses, kg, and positions, m.
-    pub(crate) fn set_asleep(&mut self, sleepers: impl Iterator<Item = (f64, [f64; 3])>) {
+    /// Records a body that from now on rides: its mass, kg, position, m, and velocity, m/s. To be
+    /// called after [`Self::stop`].
+    pub(crate) fn carry(&mut self, mass_kg: f64, place_m: [f64; 3], velocity_m_s: [f64; 3]) {
+        let kinetic_j = 0.5 * mass_kg * Vector3::from(velocity_m_s).norm_squared();
+        let [place, velocity] = [place_m, velocity_m_s];
+        self.stop([-mass_kg, -kinetic_j], [place, velocity, [0.0; 3]]);
+    }
+
+    /// Sets the sleeping bodies: masses, kg, positions, m, and velocities, m/s.
+    pub(crate) fn set_asleep(&mut self, sleepers: impl Iterator<Item = (f64, [[f64; 3]; 2])>) {
         self.asleep_kg = 0.0;
         self.asleep_moment = [0.0; 3];
-        for (mass_kg, place_m) in sleepers {
+        self.asleep_momentum = [0.0; 3];
+        for (mass_kg, [place_m, velocity_m_s]) in sleepers {
             self.asleep_kg += mass_kg;
-            for (k, moment) in self.asleep_moment.iter_mut().enumerate() {
-                *moment += mass_kg * (place_m[k] - self.about_m[k]);
+            for k in 0..3 {
+                self.asleep_moment[k] += mass_kg * (place_m[k] - self.about_m[k]);
+                self.asleep_momentum[k] += mass_kg * velocity_m_s[k];
             }
         }
     }
 
-    /// Advances the expected centre of mass by a drift.
+    /// Advances the expected centre of mass, and that of sleeping bodies, by a drift.
     pub fn drift(&mut self, time_step_s: f64) {
         for k in 0..3 {
             self.first_moment[k] += time_step_s * self.momentum[k];
+            self.asleep_moment[k] += time_step_s * self.asleep_momentum[k];
         }
     }
 }

@@ -58,6 +58,8 @@ pub struct Wall {
     pub work_j: f64,
     /// See `work_j`.
     pub pending_j: f64,
+    /// Its work on sleeping bodies that ride on it.
+    pub ridden: Ridden,
     /// Distance that the wall may move before its near particles are listed again, m.
     #[serde(skip)]
     pub skin_left_m: f64,
@@ -67,6 +69,17 @@ pub struct Wall {
     /// Data valid for one step only.
     #[serde(skip)]
     pub scratch: WallScratch,
+}
+
+/// Work of a wall on the sleeping bodies that ride on it: it holds them against gravity.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ridden {
+    /// W.
+    pub power_w: f64,
+    /// The part of the work of the wall up to the present that they had, J.
+    pub work_j: f64,
+    /// Their work in the next half step, J.
+    pub pending_j: f64,
 }
 
 /// Data of a wall valid for one step only.
@@ -103,6 +116,7 @@ impl Wall {
             damping_j: 0.0,
             work_j: 0.0,
             pending_j: 0.0,
+            ridden: Ridden::default(),
             skin_left_m: 0.0,
             moved_m: 0.0,
             scratch: WallScratch::default(),

@@ -8,6 +8,7 @@ use dem_runner::Progress;
 use dem_runner::snapshot::{Snapshot, fingerprint};
 use rayon::prelude::*;
 
+use super::riding::belts;
 use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, planned, slab, sleep};
 
 /// A sleeping pile, a ball that slowly rolls up to it, and one that falls from above.
@@ -17,10 +18,14 @@ fn pile(threads: usize) -> Plan {
     let beside = slab("beside", [6e-3, 0.0, 0.0], "");
     let roller = ball("roller", [-4e-3, 1e-3, 0.0], "velocity = [0.04, 0, 0]");
     let faller = ball("faller", [7e-3, 1e-3, 4e-3], "velocity = [0, 0, 0.2]");
-    let mut plan = planned(&format!(
+    let text = format!(
         "{}search.skin = 0.4\n{low}{middle}{beside}{roller}{faller}{GROUND}{SLEEP}",
         head(0.0)
-    ));
+    );
+    divided(planned(&text), threads)
+}
+
+fn divided(mut plan: Plan, threads: usize) -> Plan {
     let state = &mut plan.state;
     // Outside this test, this few particles do not justify a second thread.
     state.scratch.threads = threads;
@@ -30,6 +35,24 @@ fn pile(threads: usize) -> Plan {
         contacts.divide(count, threads);
     }
     plan
+}
+
+/// Riders on a belt, one of them on another one and one bonded, that meet a plate, a resting ball or
+/// the end of the belt one after another.
+fn belt(threads: usize) -> Plan {
+    let mut text = belts("0.3", 30e-3);
+    for (n, x_m) in [0.0, 5e-3, 13e-3].into_iter().enumerate() {
+        let start = if n == 1 { "" } else { CLUMP };
+        let rides = format!("{start}\nvelocity = [0.3, 0, 0]");
+        text += &slab(&format!("s{n}"), [x_m, 0.0, 0.0], &rides);
+    }
+    text += &slab(
+        "top",
+        [5e-3, 0.0, 2e-3],
+        &format!("{CLUMP}\nvelocity = [0.3, 0, 0]"),
+    );
+    text += &ball("resting", [24e-3, 3.25e-3, 1e-3], "");
+    divided(planned(&format!("{text}{SLEEP}")), threads)
 }
 
 /// All data that a run continues from or reports.
@@ -48,6 +71,8 @@ fn same(a: &State, b: &State) -> bool {
                 w.load_by_sleepers,
                 w.friction_j,
                 w.damping_j,
+                w.work_j,
+                w.ridden,
             )
         })
         .collect::<Vec<_>>()
@@ -56,6 +81,7 @@ fn same(a: &State, b: &State) -> bool {
         let sleep = sleep(s);
         (
             sleep.of_cluster.clone(),
+            sleep.riders.clone(),
             sleep.pairs.clone(),
             sleep.touches.clone(),
             sleep.particle_steps,
@@ -88,24 +114,38 @@ const END_S: f64 = 0.12;
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let mut one = pile(1).state;
-    let mut three = pile(3).state;
-    let mut asleep = 0;
-    while one.time_s < END_S {
-        go(&mut one);
-        go(&mut three);
-        asleep += sleep(&one).bodies;
+    for scene in [pile, belt] {
+        let mut one = scene(1).state;
+        let mut three = scene(3).state;
+        let mut asleep = 0;
+        while one.time_s < END_S {
+            go(&mut one);
+            go(&mut three);
+            asleep += sleep(&one).bodies;
+        }
+        assert!(asleep > 0);
+        assert!(same(&one, &three));
     }
-    assert!(asleep > 0);
-    assert!(same(&one, &three));
 }
 
 #[test]
 fn an_interruption_changes_nothing() {
-    let mut state = pile(1).state;
+    goes_on_after_interruptions(pile);
+}
+
+#[test]
+fn an_interruption_of_a_ride_changes_nothing() {
+    let riders = goes_on_after_interruptions(belt);
+    assert!(riders >= 10, "{riders}");
+}
+
+/// Returns the number of interruptions at which somebody rode.
+fn goes_on_after_interruptions(scene: fn(usize) -> Plan) -> usize {
+    let mut state = scene(1).state;
     let mut shots = Vec::new();
-    let bodies = pile(1).bodies;
-    let print = fingerprint(&pile(1).state).unwrap();
+    let bodies = scene(1).bodies;
+    let print = fingerprint(&scene(1).state).unwrap();
+    let mut riding = 0;
     let (mut awake, mut next) = (0, 0);
     while state.time_s < END_S {
         go(&mut state);
@@ -133,6 +173,7 @@ fn an_interruption_changes_nothing() {
                 Progress::default(),
             );
             shots.push(shot.to_bytes().unwrap());
+            riding += usize::from(!sleep(&state).riders.is_empty());
         }
     }
     assert!(awake >= 2, "{awake}");
@@ -146,11 +187,12 @@ fn an_interruption_changes_nothing() {
             state: mut again,
             mut bodies,
             ..
-        } = pile(2);
+        } = scene(2);
         let snapshot = Snapshot::from_bytes(bytes).unwrap();
         snapshot.restore(print, &mut again, &mut bodies).unwrap();
         let from = again.steps;
         go_until(&mut again, END_S);
         assert!(same(&state, &again), "from step {from}");
     });
+    riding
 }

@@ -165,18 +165,30 @@ pub(crate) fn place_of(
     Vector3::from(clump.place_m) + to_space * Vector3::from(template.spheres[sphere].place_m)
 }
 
-/// Puts all spheres of all clumps in place. Those of sleeping clumps already are.
+/// Puts all spheres of all clumps in place. Those of clumps that sleep at rest already are.
 pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
+    for clump in (clumps.all.iter()).filter(|clump| !clump.asleep || clump.rides()) {
+        place_spheres(clumps, clump, particles);
+    }
+}
+
+/// Puts all spheres of the clumps that are awake in place.
+pub(crate) fn place_awake(clumps: &Clumps, particles: &mut Particles) {
     for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
-        let template = clumps.template(clump);
-        let turned = rotation_of(clump.turned);
-        let to_space = turned.to_rotation_matrix();
-        let spheres = &mut particles.poses[clumps.spheres_of(clump)];
-        for (pose, &sphere) in spheres.iter_mut().zip(template.outer.iter()) {
-            pose.put_at(place_of(template, sphere as usize, clump, &to_space).into());
-            let of_sphere = rotation_of(template.spheres[sphere as usize].turned);
-            pose.turned = numbers(&(turned * of_sphere));
-        }
+        place_spheres(clumps, clump, particles);
+    }
+}
+
+/// Puts all spheres of a clump in place.
+pub(crate) fn place_spheres(clumps: &Clumps, clump: &Clump, particles: &mut Particles) {
+    let template = clumps.template(clump);
+    let turned = rotation_of(clump.turned);
+    let to_space = turned.to_rotation_matrix();
+    let spheres = &mut particles.poses[clumps.spheres_of(clump)];
+    for (pose, &sphere) in spheres.iter_mut().zip(template.outer.iter()) {
+        pose.put_at(place_of(template, sphere as usize, clump, &to_space).into());
+        let of_sphere = rotation_of(template.spheres[sphere as usize].turned);
+        pose.turned = numbers(&(turned * of_sphere));
     }
 }
 

@@ -159,7 +159,11 @@ pub(crate) fn before_kick(state: &mut State) {
     let half_s = 0.5 * state.previous_time_step_s;
     state.ledger.work.add(&powers, half_s);
     for wall in &mut state.walls {
-        wall.work_j += wall.pending_j + half_s * wall_power_w(wall, &wall.push, 0);
+        let ridden = &mut wall.ridden;
+        let ridden_j = ridden.pending_j + half_s * ridden.power_w;
+        ridden.work_j += ridden_j;
+        ridden.pending_j = 0.0;
+        wall.work_j += wall.pending_j + half_s * wall_power_w(wall, &wall.push, 0) + ridden_j;
         wall.pending_j = 0.0;
     }
 }
@@ -171,6 +175,7 @@ pub(crate) fn after_kick(state: &mut State) {
     let half_s = 0.5 * state.time_step_s;
     for wall in &mut state.walls {
         wall.pending_j = half_s * wall_power_w(wall, &wall.push, 1);
+        wall.ridden.pending_j = half_s * wall.ridden.power_w;
     }
     let State {
         ledger,

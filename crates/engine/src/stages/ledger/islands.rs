@@ -112,7 +112,9 @@ impl Sums<'_> {
             self.all[island as usize].lost_j += lost_j;
         }
         for (number, wall) in (0..).zip(&self.state.walls) {
-            self.all[islands.of_set(number) as usize].work_j += wall.work_j;
+            // Those who ride on it are not in the sums.
+            let work_j = wall.work_j - wall.ridden.work_j;
+            self.all[islands.of_set(number) as usize].work_j += work_j;
         }
         let work = &self.state.ledger.work;
         let acting = islands.acting();

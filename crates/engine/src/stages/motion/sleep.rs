@@ -6,22 +6,24 @@
 
 use nalgebra::Vector3;
 
-use crate::stages::chunks::{chunk_of, chunks_of};
-use crate::stages::clumps::motion::{place_all, synchronous};
+use super::resting::{EVERY, at_rest_together, slowest_m_s};
+use super::riding::riders_near;
+use crate::stages::clumps::motion::{place_spheres, synchronous};
 use crate::stages::contacts::forces::contact_energy_j;
-use crate::stages::ledger::totals::synchronous_motions;
-use crate::stages::search::neighbours::near_pairs;
+use crate::stages::ledger::totals::synchronous_motions_of_free;
 use crate::stages::stage::{Need, Stage};
-use crate::stages::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
+use crate::stages::walls::carrying::is_belt;
+use crate::stages::walls::{has_moved, moves, nearness, push_at_rest, touch_energy_j, will_move};
 use crate::state::State;
 use crate::state::bridges::Bridges;
+use crate::state::clusters::fragments::mass_and_centre;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::events::SleepEvent;
 use crate::state::events::TopologyChange;
 use crate::state::particles::Wrench;
 use crate::state::partitions::{Idle, divide_busy};
 use crate::state::sleep::mask::Asleep;
-use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Sleep};
+use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Rider, Sleep};
 use crate::state::walls::{Wall, WallLoad};
 use dem_io::disjoint::{find, join};
 use dem_io::units::significant;
@@ -33,6 +35,7 @@ pub(crate) const SLEEP: Stage = Stage {
             size_of_val(&sleep.of_cluster[..])
                 + size_of_val(&sleep.pairs[..])
                 + size_of_val(&sleep.touches[..])
+                + size_of_val(&sleep.riders[..])
                 + state.particles.asleep.len()
         })
     },
@@ -49,9 +52,6 @@ pub(crate) const SLEEP: Stage = Stage {
     })
 };
 
-/// Interval between checks for slow bodies, in steps.
-const EVERY: u64 = 100;
-
 /// Puts to sleep the bodies that have been slow for long enough and touch only such bodies, between
 /// a kick and the drift after it.
 pub(crate) fn update_sleep(state: &mut State) -> usize {
@@ -63,7 +63,7 @@ pub(crate) fn update_sleep(state: &mut State) -> usize {
     if state.sleep.is_none() || !state.steps.is_multiple_of(EVERY) {
         return 0;
     }
-    let speeds_m_s = speeds_m_s(state);
+    let slowest_m_s = slowest_m_s(state);
     let (Some(rule), Some(sleep), Some(clusters)) =
         (state.model.sleep, &mut state.sleep, &state.clusters)
     else {
@@ -74,127 +74,23 @@ pub(crate) fn update_sleep(state: &mut State) -> usize {
         .resize(clusters.history.len(), ClusterSleep::AWAKE);
     let slow_for =
         |body: &ClusterSleep| !body.asleep && state.time_s - body.slow_since_s >= rule.after_s;
-    for (body, speed_m_s) in sleep.of_cluster.iter_mut().zip(speeds_m_s) {
-        body.slow_since_s = match speed_m_s {
-            Some(speed_m_s) if speed_m_s < rule.speed_m_s => body.slow_since_s.min(state.time_s),
-            _ => f64::INFINITY,
+    for (body, slowest) in sleep.of_cluster.iter_mut().zip(slowest_m_s) {
+        let is_slow = |(_, speed_m_s): &([f64; 3], f64)| *speed_m_s < rule.speed_m_s;
+        let Some((velocity_m_s, _)) = slowest.filter(is_slow) else {
+            body.slow_since_s = f64::INFINITY;
+            continue;
         };
+        if body.velocity_m_s != velocity_m_s {
+            (body.velocity_m_s, body.slow_since_s) = (velocity_m_s, f64::INFINITY);
+        }
+        body.slow_since_s = body.slow_since_s.min(state.time_s);
     }
     let may: Vec<bool> = sleep.of_cluster.iter().map(slow_for).collect();
-    let falling = at_rest_together(state, may);
+    let (falling, riders) = at_rest_together(state, may);
     if !falling.is_empty() {
-        fall_asleep(state, &falling);
+        fall_asleep(state, &falling, riders);
     }
     1
-}
-
-/// For each cluster an upper bound of the speed of its points, m/s; none if it has ended or sleeps.
-fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
-    let Some(clusters) = &state.clusters else {
-        return Vec::new();
-    };
-    let mut speeds: Vec<Option<f64>> = vec![None; clusters.history.len()];
-    let mut note = |id: u32, speed_m_s: f64| {
-        let largest = &mut speeds[id as usize];
-        *largest = Some(largest.map_or(speed_m_s, |before| before.max(speed_m_s)));
-    };
-    let norm = |v: [f64; 3]| Vector3::from(v).norm();
-    let p = &state.particles;
-    let awake = chunks_of(p.free).filter(|&chunk| !p.asleep.is_whole(chunk));
-    let awake = awake.flat_map(|chunk| chunk_of(chunk, p.free));
-    for i in awake.filter(|&i| !p.sleeps(i)) {
-        let motion = &p.motions[i];
-        let turning_m_s = norm(motion.spin_rad_s) * p.poses[i].radius_m();
-        note(
-            clusters.of_particle[i],
-            norm(motion.velocity_m_s) + turning_m_s,
-        );
-    }
-    for clump in state.clumps.all.iter().filter(|clump| !clump.asleep) {
-        let template = state.clumps.template(clump);
-        let reach_m = template.largest_reach_m();
-        let turning_m_s = clump.spin_rad_s(template).norm() * reach_m;
-        note(clump.cluster, norm(clump.velocity_m_s) + turning_m_s);
-    }
-    speeds
-}
-
-/// The candidates that can sleep, in ascending order: nothing holds, loads or moves them, and all
-/// bodies that they touch, are near to or have liquid bridges to can sleep as well.
-fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
-    let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
-        return Vec::new();
-    };
-    let id = |i: u32| clusters.of_particle[i as usize];
-    let held = state.supports.iter();
-    let held = held.filter(|support| state.time_s < support.end_s);
-    let held = held.flat_map(|support| &support.held);
-    let held = held.map(|held| held.particle);
-    let loaded = state.loads.iter();
-    let loaded = loaded.filter(|load| state.time_s < load.end_s);
-    let loaded = loaded.flat_map(|load| &load.particles).copied();
-    for i in held.chain(loaded) {
-        may[id(i) as usize] = false;
-    }
-    let moving = |wall: &&Wall| moves(wall, [state.time_s, state.time_step_s]);
-    for touch in state.walls.iter().filter(moving).flat_map(|w| &w.touching) {
-        may[id(touch.particle) as usize] = false;
-    }
-    let mut names: Vec<u32> = (0..may.len() as u32).collect();
-    for (pair, history) in contacts.pairs.iter().zip(&contacts.histories) {
-        if history.overlap_m() > 0.0 {
-            join(&mut names, id(pair[0]), id(pair[1]));
-        }
-    }
-    if let Some(bridges) = &state.bridges {
-        for [a, b] in bridges.pairs.iter().map(|bridge| bridge.pair) {
-            join(&mut names, id(a), id(b));
-        }
-        for bridge in &bridges.walls {
-            if moving(&&state.walls[bridge.wall as usize]) {
-                may[id(bridge.particle) as usize] = false;
-            }
-        }
-    }
-    leave_out_islands(&mut names, &mut may, state.sleep.as_ref());
-    if !may.contains(&true) {
-        return Vec::new();
-    }
-    // Few candidates get this far: only now are all neighbours searched for.
-    place_all(&state.clumps, &mut state.particles);
-    let (poses, skin_m) = (&state.particles.poses, contacts.skin_m);
-    for wall in state.walls.iter().filter(moving) {
-        let near = nearness(wall, skin_m);
-        for (pose, &cluster) in poses.iter().zip(&clusters.of_particle) {
-            if may[cluster as usize] && near(pose) {
-                may[cluster as usize] = false;
-            }
-        }
-    }
-    for pair in near_pairs(poses, &clusters.of_particle, skin_m) {
-        join(&mut names, id(pair[0]), id(pair[1]));
-    }
-    leave_out_islands(&mut names, &mut may, state.sleep.as_ref());
-    let found = (0..may.len() as u32).filter(|&cluster| may[cluster as usize]);
-    found.collect()
-}
-
-/// Removes every island that contains an awake cluster that may not sleep.
-fn leave_out_islands(names: &mut [u32], may: &mut [bool], sleep: Option<&Sleep>) {
-    let mut can = vec![true; may.len()];
-    for cluster in 0..may.len() as u32 {
-        let sleeps = sleep.is_some_and(|sleep| sleep.is_asleep(cluster));
-        can[find(names, cluster) as usize] &= may[cluster as usize] || sleeps;
-    }
-    for cluster in 0..may.len() as u32 {
-        may[cluster as usize] &= can[find(names, cluster) as usize];
-    }
-}
-
-/// Whether a wall moves in the previous step or in the one of this length, s, that begins at this
-/// time.
-fn moves(wall: &Wall, [time_s, time_step_s]: [f64; 2]) -> bool {
-    has_moved(wall) || will_move(wall, time_s, [time_step_s; 2])
 }
 
 /// Whether any body sleeps and a wall at rest begins to move: then no body may sleep on it.
@@ -207,25 +103,57 @@ pub(crate) fn begins_to_move(
     sleep.is_some_and(|sleep| sleep.bodies > 0) && walls.iter().any(begins)
 }
 
-/// Puts clusters to sleep: sets their motion to zero and records the loss.
-fn fall_asleep(state: &mut State, falling: &[u32]) {
-    let motions = synchronous_motions(state);
-    let now = synchronous(state);
-    let (Some(clusters), Some(sleep)) = (&state.clusters, &mut state.sleep) else {
+/// Puts clusters to sleep: sets their motion to zero, or to that of the surface that carries them,
+/// and records the loss. `riders`: those of them that a surface carries.
+fn fall_asleep(state: &mut State, falling: &[u32], riders: Vec<Rider>) {
+    stop_particles(state, falling, &riders);
+    stop_clumps(state, falling, &riders);
+    if let Some(sleep) = &mut state.sleep {
+        for &id in falling {
+            sleep.of_cluster[id as usize].asleep = true;
+        }
+        sleep.riders.extend(riders);
+        sleep.riders.sort_by_key(|rider| rider.cluster);
+    }
+    state.scratch.events.sleep.push(SleepEvent {
+        step: state.steps,
+        time_s: state.time_s,
+        kind: "asleep",
+        cause: "rest",
+        bodies: falling.len(),
+    });
+    if let Some(contacts) = &mut state.contacts {
+        contacts.search_all();
+    }
+    count_sleepers(state);
+    for wall in &mut state.walls {
+        wall.ridden.pending_j = 0.5 * state.time_step_s * wall.ridden.power_w;
+    }
+}
+
+/// The rider that is a cluster which falls asleep.
+fn rider_of(riders: &[Rider], cluster: u32) -> Option<&Rider> {
+    let at = riders.binary_search_by_key(&cluster, |rider| rider.cluster);
+    at.ok().map(|at| &riders[at])
+}
+
+/// Stops particles that fall asleep.
+fn stop_particles(state: &mut State, falling: &[u32], riders: &[Rider]) {
+    let motions = synchronous_motions_of_free(state);
+    let Some(clusters) = &state.clusters else {
         return;
     };
     let falls = |id: u32| falling.binary_search(&id).is_ok();
     let half_s = 0.5 * state.time_step_s;
     for i in (0..state.particles.len()).filter(|&i| falls(clusters.of_particle[i])) {
+        let rider = rider_of(riders, clusters.of_particle[i]);
         let p = &mut state.particles;
         let motion = p.motions[i];
         if i < p.free {
             let own = motion.spin_rad_s.map(|w| w / motion.inverse_inertia);
-            let kinetic_j = p.kinetic_j(i, &motions[i]);
-            state.ledger.stop(
-                [1.0 / motion.inverse_mass, kinetic_j],
-                [p.poses[i].place().into(), motion.velocity_m_s, own],
-            );
+            let (mass_kg, kinetic_j) = (1.0 / motion.inverse_mass, p.kinetic_j(i, &motions[i]));
+            let place_m = p.poses[i].place().into();
+            (state.ledger).stop([mass_kg, kinetic_j], [place_m, motion.velocity_m_s, own]);
             if let Some(mean) = state.mean_resistance.get_mut(i) {
                 *mean = Wrench::default();
             }
@@ -239,13 +167,23 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
                 state.ledger.gain(-half_s * power_w);
                 *wrench = Wrench::default();
             }
+            if let Some(rider) = rider {
+                state.ledger.carry(mass_kg, place_m, rider.velocity_m_s);
+                let [fx, fy, fz, _] = p.wrenches[i].force_n;
+                take_back_work(&mut state.walls, rider, [fx, fy, fz], half_s);
+            }
         }
-        p.motions[i].velocity_m_s = [0.0; 3];
+        p.motions[i].velocity_m_s = rider.map_or([0.0; 3], |rider| rider.velocity_m_s);
         p.motions[i].spin_rad_s = [0.0; 3];
         p.wrenches[i] = Wrench::default();
     }
-    for (n, now) in now.iter().enumerate() {
-        if !falls(now.cluster) {
+}
+
+/// Stops clumps that fall asleep.
+fn stop_clumps(state: &mut State, falling: &[u32], riders: &[Rider]) {
+    let half_s = 0.5 * state.time_step_s;
+    for (n, now) in synchronous(state).iter().enumerate() {
+        if falling.binary_search(&now.cluster).is_err() {
             continue;
         }
         let template = state.clumps.template(now);
@@ -256,29 +194,42 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
             [clump.place_m, clump.velocity_m_s, clump.angular_momentum],
         );
         clump.velocity_m_s = [0.0; 3];
+        if let Some(rider) = rider_of(riders, clump.cluster) {
+            clump.velocity_m_s = rider.velocity_m_s;
+            (state.ledger).carry(mass_kg, clump.place_m, rider.velocity_m_s);
+            take_back_work(&mut state.walls, rider, clump.force_n, half_s);
+        }
         clump.angular_momentum = [0.0; 3];
         clump.force_n = [0.0; 3];
         clump.torque_n_m = [0.0; 3];
     }
-    for &id in falling {
-        sleep.of_cluster[id as usize].asleep = true;
-    }
-    state.scratch.events.sleep.push(SleepEvent {
-        step: state.steps,
-        time_s: state.time_s,
-        kind: "asleep",
-        cause: "rest",
-        bodies: falling.len(),
-    });
-    if let Some(contacts) = &mut state.contacts {
-        contacts.search_all();
-    }
-    count_sleepers(state);
 }
 
-/// Sleeping clusters near an awake particle, by the list of pairs, or near a moving wall.
-pub(crate) fn disturbed(state: &State) -> Vec<u32> {
-    let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
+/// Takes back the work on a rider in the next half step, which the wall that carries it has already
+/// recorded: all forces on bodies that ride together, `force_n`, are its forces.
+fn take_back_work(walls: &mut [Wall], rider: &Rider, force_n: [f64; 3], half_s: f64) {
+    let power_w: f64 = (0..3).map(|k| force_n[k] * rider.velocity_m_s[k]).sum();
+    walls[rider.wall as usize].pending_j -= half_s * power_w;
+}
+
+/// Sleeping clusters near an awake particle, by the list of pairs, or near a wall or sleeping bodies
+/// that do not move as they do.
+pub(crate) fn disturbed(state: &mut State, skin_m: f64) -> Vec<u32> {
+    let mut near = riders_near(state, skin_m);
+    near.extend(near_moving(state));
+    let Some(clusters) = &state.clusters else {
+        return Vec::new();
+    };
+    let ids = near.iter().map(|&i| clusters.of_particle[i as usize]);
+    let mut ids: Vec<u32> = ids.collect();
+    ids.sort_unstable();
+    ids.dedup();
+    ids
+}
+
+/// Sleeping particles near an awake one, by the list of pairs, and those at rest near a moving wall.
+fn near_moving(state: &State) -> Vec<u32> {
+    let Some(contacts) = &state.contacts else {
         return Vec::new();
     };
     let p = &state.particles;
@@ -296,18 +247,14 @@ pub(crate) fn disturbed(state: &State) -> Vec<u32> {
             });
     let mut near: Vec<u32> = near_particles.collect();
     for (n, wall) in state.walls.iter().enumerate() {
-        if moves(wall, [state.time_s, state.time_step_s]) {
+        if moves(wall, state.moment()) {
             let is_near = nearness(wall, contacts.skin_m);
-            let sleepers = (0..p.len()).filter(|&i| p.asleep[i] && is_near(&p.poses[i]));
+            let sleepers = (0..p.len()).filter(|&i| state.rests_asleep(i) && is_near(&p.poses[i]));
             near.extend(sleepers.map(|i| i as u32));
             near.extend(asleep_at(state, n));
         }
     }
-    let ids = near.iter().map(|&i| clusters.of_particle[i as usize]);
-    let mut ids: Vec<u32> = ids.collect();
-    ids.sort_unstable();
-    ids.dedup();
-    ids
+    near
 }
 
 /// Sleeping particles with a liquid bridge to the wall of this number.
@@ -342,6 +289,11 @@ pub(crate) fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
             bodies += 1;
         }
     }
+    for clump in state.clumps.all.iter().filter(|clump| clump.rides()) {
+        if !sleep.is_asleep(clump.cluster) {
+            place_spheres(&state.clumps, clump, &mut state.particles);
+        }
+    }
     state.scratch.events.sleep.push(SleepEvent {
         step: state.steps,
         time_s: state.time_s,
@@ -357,7 +309,7 @@ pub(crate) fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
         state.contacts.as_mut(),
         &mut state.walls,
         state.bridges.as_ref(),
-        is_awake,
+        (is_awake, state.time_s),
     );
     count_sleepers(state);
 }
@@ -381,20 +333,19 @@ pub(crate) fn prepare_change(state: &mut State, changes: &TopologyChange) {
         let contacts = state.contacts.as_mut();
         let Sleep { pairs, touches, .. } = sleep;
         let bridges = state.bridges.as_ref();
-        put_back(pairs, touches, contacts, &mut state.walls, bridges, |_| {
-            true
-        });
+        let all = (|_| true, state.time_s);
+        put_back(pairs, touches, contacts, &mut state.walls, bridges, all);
     }
 }
 
-/// Returns the frozen contacts of awake particles to the lists.
+/// Returns the frozen contacts of awake particles to the lists, at this time, s.
 fn put_back(
     pairs: &mut Vec<FrozenContact>,
     touches: &mut Vec<FrozenWallContact>,
     contacts: Option<&mut Contacts>,
     walls: &mut [Wall],
     bridges: Option<&Bridges>,
-    is_awake: impl Fn(u32) -> bool,
+    (is_awake, time_s): (impl Fn(u32) -> bool, f64),
 ) {
     if let Some(contacts) = contacts {
         let before = contacts.pairs.iter().zip(&contacts.histories);
@@ -411,7 +362,7 @@ fn put_back(
     for wall in walls.iter_mut() {
         wall.touching.sort_by_key(|touch| touch.particle);
     }
-    sum_pushes(touches, bridges, |i| !is_awake(i), walls);
+    sum_pushes(touches, bridges, |i| !is_awake(i), (walls, time_s));
 }
 
 /// Moves the contact histories of sleeping bodies out of the lists and keeps them.
@@ -445,6 +396,7 @@ pub(crate) fn freeze_contacts(state: &mut State) {
                     wall: n,
                     touch: *touch,
                     push: push_at_rest(wall, contacts, p, touch),
+                    at_s: state.time_s,
                     elastic_j: touch_energy_j(wall, contacts, p, touch),
                 });
             }
@@ -459,24 +411,31 @@ pub(crate) fn freeze_contacts(state: &mut State) {
             .sort_by_key(|kept| (kept.wall, kept.touch.particle));
         let sleeps = |i: u32| p.sleeps(i as usize);
         let bridges = state.bridges.as_ref();
-        sum_pushes(&sleep.touches, bridges, sleeps, &mut state.walls);
+        let walls = (&mut state.walls[..], state.time_s);
+        sum_pushes(&sleep.touches, bridges, sleeps, walls);
     }
 }
 
-/// Forces between walls and the bodies that sleep on them.
+/// Forces between walls and the bodies that sleep on them, at this time, s.
 fn sum_pushes(
     touches: &[FrozenWallContact],
     bridges: Option<&Bridges>,
     sleeps: impl Fn(u32) -> bool,
-    walls: &mut [Wall],
+    (walls, time_s): (&mut [Wall], f64),
 ) {
     for wall in walls.iter_mut() {
         wall.load_by_sleepers = WallLoad::default();
     }
-    for FrozenWallContact { wall, push, .. } in touches {
-        walls[*wall]
-            .load_by_sleepers
-            .add(push.force_n, push.torque_n_m, push.belt_w);
+    for kept in touches {
+        let (wall, push) = (&mut walls[kept.wall], &kept.push);
+        let mut torque_n_m = push.torque_n_m;
+        if is_belt(wall) {
+            // Its force has moved along the belt, whose pivot stays in place.
+            let along_m = Vector3::from(wall.model.surface_velocity_m_s) * (time_s - kept.at_s);
+            let more = along_m.cross(&Vector3::from(push.force_n));
+            torque_n_m = (Vector3::from(torque_n_m) + more).into();
+        }
+        (wall.load_by_sleepers).add(push.force_n, torque_n_m, push.belt_w);
     }
     let of_walls = bridges.into_iter().flat_map(|bridges| &bridges.walls);
     for bridge in of_walls.filter(|bridge| sleeps(bridge.particle)) {
@@ -524,9 +483,42 @@ pub(crate) fn count_sleepers(state: &mut State) {
     for clump in &mut state.clumps.all {
         clump.asleep = sleep.is_asleep(clump.cluster);
     }
-    let free = (0..p.free).filter(|&i| p.sleeps(i));
-    let free = free.map(|i| (1.0 / p.motions[i].inverse_mass, p.poses[i].place().into()));
+    let free = (0..p.free).filter(|&i| p.sleeps(i)).map(|i| {
+        let motion = &p.motions[i];
+        let moving = [p.poses[i].place().into(), motion.velocity_m_s];
+        (1.0 / motion.inverse_mass, moving)
+    });
     let clumps = state.clumps.all.iter().filter(|clump| clump.asleep);
-    let clumps = clumps.map(|clump| (state.clumps.template(clump).mass_kg, clump.place_m));
+    let clumps = clumps.map(|clump| {
+        let moving = [clump.place_m, clump.velocity_m_s];
+        (state.clumps.template(clump).mass_kg, moving)
+    });
     state.ledger.set_asleep(free.chain(clumps));
+    count_riders(state);
+}
+
+/// Updates the riders and the power of the walls that carry them.
+fn count_riders(state: &mut State) {
+    let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
+        return;
+    };
+    let of_cluster = &sleep.of_cluster;
+    (sleep.riders).retain(|rider| of_cluster[rider.cluster as usize].asleep);
+    let speeds = sleep.riders.iter();
+    let speeds = speeds.map(|rider| Vector3::from(rider.velocity_m_s).norm());
+    sleep.riding_m_s = speeds.fold(0.0, f64::max);
+    for wall in &mut state.walls {
+        wall.ridden.power_w = 0.0;
+    }
+    let weight_m_s2 = -Vector3::from(state.model.gravity_m_s2);
+    for rider in &sleep.riders {
+        let members = clusters.members(rider.cluster);
+        let carrier = (members.first()).and_then(|&i| state.clumps.carrier_of(i as usize));
+        let mass_kg = match carrier {
+            Some(clump) => state.clumps.template(&state.clumps.all[clump]).mass_kg,
+            None => mass_and_centre(members, &state.particles).0,
+        };
+        let rise_m2_s3 = weight_m_s2.dot(&Vector3::from(rider.velocity_m_s));
+        state.walls[rider.wall as usize].ridden.power_w += mass_kg * rise_m2_s3;
+    }
 }

@@ -17,6 +17,7 @@ use crate::stages::clumps::motion::list_near;
 use crate::stages::clusters::bytes::{ClusterUser, clusters_bytes};
 use crate::stages::contacts::forces::{find_mean_radius, list_within, relist};
 use crate::stages::ledger::islands::join_at_moving_walls;
+use crate::stages::motion::riding::{is_due, use_up_approach};
 use crate::stages::motion::sleep::begins_to_move;
 use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::{plane_in_space, reaches};
@@ -68,6 +69,12 @@ pub(crate) fn use_up_skin(state: &mut State) -> usize {
             }
         }
     }
+    if let (Some(sleep), Some(contacts)) = (&mut state.sleep, &state.contacts)
+        && !sleep.riders.is_empty()
+    {
+        let riding_m_s = use_up_approach(sleep, contacts.moved_m, state.time_step_s);
+        state.fastest_m_s = state.fastest_m_s.max(riding_m_s);
+    }
     if let (Some(contacts), None) = (&mut state.contacts, &state.sleep) {
         let references = &mut contacts.scratch.references;
         use_up(&state.scratch.chunks_moved_m, &state.clumps, references);
@@ -78,14 +85,12 @@ pub(crate) fn use_up_skin(state: &mut State) -> usize {
 /// Rebuilds the lists of what may have come near something since the last time. Returns the number
 /// of particles searched for.
 pub(crate) fn renew_lists(state: &mut State) -> usize {
+    let sleep = state.sleep.as_ref();
+    let is_due = is_due(state) || begins_to_move(sleep, &state.walls, state.moment());
     let Some(contacts) = &mut state.contacts else {
         return 0;
     };
-    if begins_to_move(
-        state.sleep.as_ref(),
-        &state.walls,
-        [state.time_s, state.time_step_s],
-    ) {
+    if is_due {
         contacts.search_all();
     }
     if state.sleep.is_some() {

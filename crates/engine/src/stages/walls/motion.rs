@@ -132,6 +132,12 @@ pub(crate) fn will_move(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> bool {
     planned(wall, time_s, steps_s) != [[0.0; 3]; 2]
 }
 
+/// Whether a wall or its surface moves in the previous step or in the one of this length, s, that
+/// begins at this time.
+pub(crate) fn moves(wall: &Wall, [time_s, time_step_s]: [f64; 2]) -> bool {
+    has_moved(wall) || will_move(wall, time_s, [time_step_s; 2])
+}
+
 /// Largest speed of a wall's point near particles, m/s, from the speed of its pivot, m/s, and its
 /// spin, rad/s.
 pub fn fastest_point_m_s(

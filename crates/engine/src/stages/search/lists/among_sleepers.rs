@@ -6,9 +6,10 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::stages::chunks::{chunk_of, chunks_of, in_tasks};
-use crate::stages::clumps::motion::place_all;
+use crate::stages::clumps::motion::{place_all, place_awake};
 use crate::stages::contacts::forces::{find_mean_radius, list_within, relist};
 use crate::stages::ledger::islands::join_at_moving_walls;
+use crate::stages::motion::riding::{at_edges, list_riders_beside, look_ahead};
 use crate::stages::motion::sleep::{disturbed, freeze_contacts, wake};
 use crate::stages::search::neighbours::{ball_of, find_pairs_of_all};
 use crate::stages::walls::list_near;
@@ -29,45 +30,82 @@ const MOST_PARTS: usize = 64;
 /// something moving is near it. Returns the number of particles searched for.
 pub(super) fn list_among_sleepers(state: &mut State) -> usize {
     let mut listed = 0;
-    place_all(&state.clumps, &mut state.particles);
+    if state
+        .sleep
+        .as_ref()
+        .is_some_and(|sleep| sleep.boxes.is_empty())
+    {
+        // Somebody has fallen asleep or changed.
+        place_all(&state.clumps, &mut state.particles);
+    } else {
+        place_awake(&state.clumps, &mut state.particles);
+    }
     freeze_contacts(state);
+    let ending = at_edges(state);
+    if !ending.is_empty() {
+        wake(state, &ending, "edge");
+    }
+    let skin_m = skin_m(state);
     loop {
-        listed += list_awake(state);
-        let near = disturbed(state);
+        listed += list_awake(state, skin_m);
+        let near = disturbed(state, skin_m);
         if near.is_empty() {
             break;
         }
         wake(state, &near, "near");
     }
+    if let Some(contacts) = state.contacts.take() {
+        look_ahead(state, &contacts.scratch.buffers.awake.boxes, skin_m);
+        state.contacts = Some(contacts);
+    }
     listed
+}
+
+/// What is nearer than this is listed, m.
+fn skin_m(state: &State) -> f64 {
+    let moved_m = state.fastest_m_s * state.time_step_s;
+    let least_m = state
+        .contacts
+        .as_ref()
+        .map_or(0.0, |contacts| contacts.skin_m);
+    // The skin covers at least two steps: see `refer_particle`.
+    least_m.max(4.0 * moved_m)
 }
 
 /// Lists walls and pairs, without pairs of sleeping particles. Returns the number of particles that
 /// may be in a pair.
-fn list_awake(state: &mut State) -> usize {
-    let moved_m = state.fastest_m_s * state.time_step_s;
-    let Some(sleep) = &mut state.sleep else {
-        return 0;
-    };
+fn list_awake(state: &mut State, skin_m: f64) -> usize {
     let Some(mut contacts) = state.contacts.take() else {
         return 0;
     };
     let p = &state.particles;
-    // The skin covers at least two steps: see `refer_particle`.
-    let skin_m = contacts.skin_m.max(4.0 * moved_m);
     let of_tasks = &mut contacts.scratch.buffers.reached;
     list_near(&mut state.walls, p, skin_m, of_tasks);
     contacts.skin_left_m = 0.5 * skin_m;
     let mut searched = 0;
     if !contacts.model.alone {
-        if sleep.boxes.is_empty() {
-            sleep.boxes = boxes_of_sleepers(p);
+        if state
+            .sleep
+            .as_ref()
+            .is_some_and(|sleep| sleep.boxes.is_empty())
+        {
+            let boxes = boxes_of_sleepers(state);
+            if let Some(sleep) = &mut state.sleep {
+                sleep.boxes = boxes;
+            }
         }
+        let p = &state.particles;
         if contacts.scratch.mean_radius_m == 0.0 {
             find_mean_radius(&mut contacts, p, 0);
         }
         let awake = &mut contacts.scratch.buffers.awake;
-        list_what_may_meet(p, &sleep.boxes, skin_m, awake);
+        list_boxes_of_awake(p, skin_m, awake);
+        let mut riders = list_riders_beside(state, &awake.boxes);
+        list_what_may_meet(state, awake);
+        if !riders.is_empty() {
+            awake.particles.append(&mut riders);
+            awake.particles.sort_unstable();
+        }
         searched = awake.particles.len();
         let mut pairs = pairs_of_awake(state, &mut contacts, skin_m);
         list_within(state, &mut contacts, &mut pairs);
@@ -81,10 +119,12 @@ fn list_awake(state: &mut State) -> usize {
     searched
 }
 
-/// For each chunk of particles the box around those that sleep, m.
-fn boxes_of_sleepers(p: &Particles) -> Vec<Bounds> {
+/// For each chunk of particles the box around those that sleep and do not ride, m.
+fn boxes_of_sleepers(state: &State) -> Vec<Bounds> {
+    let p = &state.particles;
     let chunks = chunks_of(p.len()).into_par_iter();
-    let of_chunk = |chunk| box_of(p, chunk_of(chunk, p.len()).filter(|&i| p.sleeps(i)));
+    let rests = |i: &usize| state.rests_asleep(*i);
+    let of_chunk = |chunk| box_of(p, chunk_of(chunk, p.len()).filter(rests));
     chunks.map(of_chunk).collect()
 }
 
@@ -115,15 +155,11 @@ fn list_boxes_of_awake(p: &Particles, skin_m: f64, buffers: &mut AwakeBuffers) {
     }
 }
 
-/// Lists the particles that may be in a pair, ascending: those that are awake, and those asleep
-/// beside them. `of_sleepers`: boxes around the sleepers of each chunk.
-fn list_what_may_meet(
-    p: &Particles,
-    of_sleepers: &[Bounds],
-    skin_m: f64,
-    buffers: &mut AwakeBuffers,
-) {
-    list_boxes_of_awake(p, skin_m, buffers);
+/// Lists the particles that may be in a pair, ascending, without riders: those that are awake, and
+/// those at rest beside them.
+fn list_what_may_meet(state: &State, buffers: &mut AwakeBuffers) {
+    let p = &state.particles;
+    let of_sleepers = state.sleep.as_ref().map_or(&[][..], |sleep| &sleep.boxes);
     let awake = &buffers.boxes[..];
     let of_chunks = in_tasks(of_sleepers.len(), &mut buffers.tasks, |chunk, task| {
         let beside = &mut task.boxes;
@@ -138,7 +174,8 @@ fn list_what_may_meet(
             let may = |&i: &usize| {
                 let ball = around(&p.poses[i].position_m);
                 let mut parts = beside.iter().map(|&n| &awake[n as usize]);
-                !p.sleeps(i) || beside.len() > MOST_PARTS || parts.any(|part| part.overlaps(&ball))
+                let is_beside = beside.len() > MOST_PARTS || parts.any(|part| part.overlaps(&ball));
+                !p.sleeps(i) || (is_beside && state.rests_asleep(i))
             };
             let some = chunk_of(chunk, p.len());
             task.particles.extend(some.filter(may).map(|i| i as u32));
