@@ -172,7 +172,7 @@ fn cake(root: &Path, diameters: &str) -> Body {
     };
     make_body(&surface, &settings, &|_, _| Ok(()))
         .expect("the shape is filled")
-        .body
+        .0
 }
 
 fn main() {

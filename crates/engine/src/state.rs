@@ -20,7 +20,6 @@ pub mod model;
 pub mod particles;
 pub mod partitions;
 pub mod population;
-pub mod regions;
 pub(crate) mod renumbered;
 pub mod rigid_parts;
 pub mod rules;

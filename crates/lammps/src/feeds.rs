@@ -15,9 +15,9 @@ use dem_scene::Scene;
 use super::duration::{step_s, steps};
 use super::words::{block, cylinder, numbers, refused};
 use dem_engine::state::clumps::Template;
-use dem_engine::state::regions::Region;
 use dem_engine::state::rules::{Feed as Rate, Inlet};
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::region::Region;
 use dem_plan::Plan;
 
 /// A body that an inlet feeds.

@@ -13,6 +13,7 @@ pub mod frame;
 pub mod mesh;
 pub mod one_surface;
 pub mod plane;
+pub mod region;
 pub mod solid_box;
 mod touch;
 

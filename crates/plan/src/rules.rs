@@ -17,9 +17,9 @@ use super::triggers::{
 use super::walls::surface_of;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Template;
-use dem_engine::state::regions::Region;
 use dem_engine::state::rules::{Feed, Inlet, Outlet, Restore, Rules, Start};
 use dem_engine::state::walls::Wall;
+use dem_physics::geometry::region::Region;
 use dem_physics::geometry::{Bounds, Mesh};
 use dem_physics::rotation::numbers;
 

@@ -11,9 +11,9 @@ use dem_scene::Scene;
 use dem_engine::state::State;
 use dem_engine::state::clumps::{Template, sphere_volume_m3};
 use dem_engine::state::particles::Pose;
-use dem_engine::state::regions::Region;
 use dem_engine::state::rules::{Outlet, PrincipalStress, Touches, Trigger};
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::region::Region;
 use dem_physics::shape::inertia::of_union;
 
 /// What turns a clump into its cluster. None: nothing does. `number`: of a region.

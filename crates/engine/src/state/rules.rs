@@ -6,9 +6,9 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::population::InletProgress;
-use super::regions::Region;
 use super::walls::Wall;
 use dem_physics::geometry::Frame;
+use dem_physics::geometry::region::Region;
 
 /// Condition under which a clump becomes a bonded cluster (BPRM: Platzer 2022, section 4.5.4).
 #[derive(Debug, Clone, PartialEq, Serialize)]

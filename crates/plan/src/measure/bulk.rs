@@ -13,7 +13,7 @@ use super::measurement::{IfZero, Measurement};
 use super::probe::Probe;
 use super::spheres::{Sphere, across, spheres};
 use super::view::View;
-use dem_engine::state::regions::Region;
+use dem_physics::geometry::region::Region;
 
 /// Points of a sphere that a border cuts: its part on one side is known to some thousandths.
 const POINTS: usize = 500;

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::spheres::Sphere;
-use dem_engine::state::regions::Region;
 use dem_engine::state::watches::IndexError;
+use dem_physics::geometry::region::Region;
 
 /// Smallest number of cells with something in them for which a mixing index has a meaning.
 pub(super) const FEWEST_MIXED_CELLS: usize = 10;

@@ -177,9 +177,9 @@ mod tests {
     use super::*;
     use dem_engine::state::bonds::Bonds;
     use dem_engine::state::particles::Particles;
-    use dem_engine::state::regions::Region;
     use dem_engine::state::rules::{Feed, Inlet, Outlet};
     use dem_engine::state::walls::Wall;
+    use dem_physics::geometry::region::Region;
     use dem_physics::geometry::{Frame, Plane};
 
     /// A gate of 0.2 m x 0.2 m, 0.8 m above a floor.

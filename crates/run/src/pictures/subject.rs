@@ -10,8 +10,8 @@ use super::scale::Scale;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::Cluster;
-use dem_engine::state::regions::Region;
 use dem_engine::state::walls::Wall;
+use dem_physics::geometry::region::Region;
 use dem_physics::geometry::{Bounds, Mesh, Shape};
 
 /// Distance to which planes are drawn beyond the particles, as a fraction of the width of these.

@@ -9,8 +9,8 @@ use super::subject::{around, balls, outlines_of_regions, points_of, regions_near
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::particles::Pose;
-use dem_engine::state::regions::Region;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::region::Region;
 
 /// Width and height of a picture, px.
 pub(crate) const SIZE_PX: [u32; 2] = [960, 540];

@@ -1,7 +1,7 @@
 //! Regions compared with their definitions.
 
-use dem_engine::state::regions::Region;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::region::Region;
 use nalgebra::Vector3;
 
 use super::{HEAD, planned};

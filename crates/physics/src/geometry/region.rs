@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use dem_physics::geometry::Bounds;
+use crate::geometry::Bounds;
 
 /// A region of space.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -101,7 +101,7 @@ impl Region {
     }
 
     /// A distance, m, within which there is no border around a point.
-    pub(crate) fn to_border_m(&self, point_m: Vector3<f64>) -> f64 {
+    pub fn to_border_m(&self, point_m: Vector3<f64>) -> f64 {
         let bounds = self.bounds();
         let place: [f64; 3] = point_m.into();
         let outside_m = bounds.distance(&place);
@@ -138,7 +138,7 @@ impl Region {
     }
 
     /// Whether a straight way between two points, m, both of them outside, leads through it.
-    pub(crate) fn is_passed(&self, [from, to]: [Vector3<f64>; 2]) -> bool {
+    pub fn is_passed(&self, [from, to]: [Vector3<f64>; 2]) -> bool {
         if !self.bounds().on_segment([from, to], 0.0) {
             return false;
         }
