@@ -96,6 +96,7 @@ impl<'a> Run<'a> {
                 .map_err(|error| error.within(&place.unwrap_or_default()))?;
             progress = snapshot.progress;
             progress.go_on(&state, schedule, scene)?;
+            progress.plain.step_s = progress.plain.step_s.min(choice.replaced.step_s);
             restore_histories(&mut probes, snapshot.measures, &bodies, &mut state);
             changed_step = change_step(&mut state, &choice, scene.run.adaptive);
         }

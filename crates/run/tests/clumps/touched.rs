@@ -122,8 +122,8 @@ fn who_became_rigid_again_is_replaced_by_the_next_touch() {
     assert!((3e-3..3.3e-3).contains(&between_s), "{between_s}");
 }
 
-#[test]
-fn who_became_rigid_while_it_touched_stays_so_until_it_parts() {
+/// A pair that comes to rest on the ground, with more in its scene.
+fn resting(more: &str) -> State {
     let pair = block(
         "pair",
         [2, 1, 1],
@@ -132,15 +132,19 @@ fn who_became_rigid_while_it_touched_stays_so_until_it_parts() {
         "start_as = \"clump\"\nposition = [0, 0, 1e-3]\nvelocity = [0, 0, -0.01]",
     );
     let text = format!(
-        "{HEAD}run.gravity = [0, 0, -9.81]\ncontacts.stuff-stuff = {{ restitution = 0.1, friction = 0 }}\n{pair}\
+        "{HEAD}run.gravity = [0, 0, -9.81]\ncontacts.stuff-stuff = {{ restitution = 0.1, friction = 0 }}\n{more}{pair}\
          [walls.ground]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n\
          [replacement.pair]\nwhen = {{ touches = \"ground\" }}\n\
          restore = {{ unbroken_for = 3e-4, min_particles = 2, strain_energy = 1e3, fluctuation_velocity = 10 }}\n"
     );
     let mut plan = planned(&text);
-    let state = &mut plan.state;
-    state.time_step_s = STEP_S;
-    // It comes to rest on the ground.
+    plan.state.time_step_s = STEP_S;
+    plan.state
+}
+
+#[test]
+fn who_became_rigid_while_it_touched_stays_so_until_it_parts() {
+    let state = &mut resting("");
     let (replaced, _) = replacements(state, 0.02);
     let (later, _) = replacements(state, 0.04);
     assert!(!replaced.is_empty());
@@ -150,6 +154,19 @@ fn who_became_rigid_while_it_touched_stays_so_until_it_parts() {
     state.clumps.all[0].velocity_m_s[2] = 0.05;
     let (lifted, _) = replacements(state, 0.06);
     assert!(!lifted.is_empty());
+}
+
+#[test]
+fn who_sleeps_has_not_parted() {
+    let state = &mut resting("sleep = { speed = 0.02, after = 2e-3 }\n");
+    while state.clumps.all.is_empty() || !state.clumps.all[0].asleep {
+        happens(state);
+        assert!(state.time_s < 0.1, "it falls asleep");
+    }
+    let (replaced, _) = replacements(state, state.time_s + 1e-3);
+    assert_eq!(replaced, []);
+    let clump = &state.clumps.all[0];
+    assert!(clump.asleep && clump.rigid_while_touching);
 }
 
 #[test]

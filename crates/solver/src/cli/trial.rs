@@ -44,7 +44,7 @@ impl Trial {
         let mut trial = if plan.state.model.rules.are_none() {
             Self::of_steps(plan, steps)
         } else {
-            let flow = FlowTrial::of(&plan.state, scene.run.end_time_s);
+            let flow = FlowTrial::of(plan, scene.run.end_time_s);
             Self {
                 notes: flow.notes().collect(),
                 per_step_s: flow.per_step_s,

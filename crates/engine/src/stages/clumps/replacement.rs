@@ -86,9 +86,9 @@ fn all_triggered(state: &mut State) -> Vec<(usize, &'static str)> {
     let mut touched = std::mem::take(&mut state.scratch.touched);
     state.scratch.squeezing += find_squeezes(state, &mut squeezes);
     state.scratch.squeezing += find_touched(state, &mut touched);
-    for (clump, &touched) in state.clumps.all.iter_mut().zip(&touched) {
-        clump.rigid_while_touching &= touched;
-    }
+    // The contacts of those that sleep are kept elsewhere, and stay.
+    let awake = (state.clumps.all.iter_mut().zip(&touched)).filter(|(clump, _)| !clump.asleep);
+    awake.for_each(|(clump, &touched)| clump.rigid_while_touching &= touched);
     let found = triggered(state, &squeezes, &touched).collect();
     state.scratch.squeezes = squeezes;
     state.scratch.touched = touched;

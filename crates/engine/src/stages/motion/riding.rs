@@ -112,7 +112,7 @@ struct Part {
     of: PartOf,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum PartOf {
     Rider(u32),
     /// The bodies at rest in a chunk of particles.
@@ -268,6 +268,8 @@ pub(crate) fn riders_near(state: &mut State, skin_m: f64) -> Vec<u32> {
             meeting.extend(overlapping(one, other, margin_m).iter().flatten());
         }
     }
+    meeting.sort_unstable();
+    meeting.dedup();
     for (number, cluster) in reached {
         let members = place_rider(state, cluster);
         let is_near = nearness(&state.walls[number], skin_m);
