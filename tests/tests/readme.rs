@@ -85,7 +85,7 @@ fn copy_data(to: &Path) {
     }
 }
 
-/// The command, with larger spheres, fewer packings and a chute that ends sooner; none if it builds
+/// The command, with larger spheres, fewer packings and a scene that ends sooner; none if it builds
 /// or tests the programs.
 fn shortened(line: &str) -> Option<String> {
     let line = line
@@ -98,7 +98,8 @@ fn shortened(line: &str) -> Option<String> {
         .replace(" 2mm..3mm", " 4mm..5mm")
         .replace(" 5mm..7mm", " 7mm..9mm")
         .replace(" -o cake.toml --", " -o cake.toml --packings 2 --")
-        .replace("/chute.toml", "/chute.toml --set run.end_time=0.2")
+        .replace(" 4.6mm..5.1mm", " 10mm..12mm")
+        .replace("/lumps.toml", "/lumps.toml --set run.end_time=0.1")
         .replace(
             " data/studies/spinning-bar.toml",
             " data/studies/spinning-bar.toml --jobs 2",
@@ -149,9 +150,9 @@ fn commands_of_the_readme_run() {
         "README.md",
         1,
         &[
-            "cake.vtp",
-            "chute-out/film-strip.png",
-            "chute-out/report.html",
+            "lump.vtp",
+            "lumps-out/film-strip.png",
+            "lumps-out/report.html",
         ],
     );
 }

@@ -79,7 +79,6 @@ fn stretching_modes_meet_their_closed_form_to_second_order() {
                 (place_m / moved(end_s) - 1.0).abs()
             });
             let found = orders(&errors);
-            eprintln!("{count}, {damping_ratio}: {errors:?}: {found:?}");
             assert!((found[2] - 2.0).abs() < 0.1, "{errors:?}: {found:?}");
         }
     }
@@ -101,29 +100,29 @@ fn any_damping_is_stable_up_to_the_undamped_limit() {
         for _ in 0..steps {
             step(&mut state);
         }
-        let passes = state.scratch.damping_passes as f64 / f64::from(steps);
-        let largest = state.time_step_s * state.damping_rate_1_s;
-        eprintln!(
-            "{damping_ratio}, {largest}: {passes} passes, {} of {opening_j}",
-            energy_j(&state)
-        );
         assert!(energy_j(&state) < 0.5 * opening_j, "{damping_ratio}");
     }
 }
 
-/// A damping ratio of 0.2 in a packed body at 0.9 of the limit.
+/// A damping ratio of 0.2 in a packed body, at four tenths of the limit as in the chute, and above
+/// what one pass covers.
 #[test]
 fn damping_takes_one_pass_over_the_bonds() {
-    let mut state = shaken(0.2);
-    state.damping_rate_1_s = damping_bound_1_s(&mut state);
-    state.time_step_s = 0.9 * step_limit(&mut state).step_s;
-    let largest = state.time_step_s * state.damping_rate_1_s;
+    let passes = |fraction: f64| {
+        let mut state = shaken(0.2);
+        state.damping_rate_1_s = damping_bound_1_s(&mut state);
+        state.time_step_s = fraction * step_limit(&mut state).step_s;
+        for _ in 0..200 {
+            step(&mut state);
+        }
+        let largest = state.time_step_s * state.damping_rate_1_s;
+        (largest, state.scratch.damping_passes)
+    };
+    let (largest, of_one_pass) = passes(0.4);
     assert!(ONE_STAGE < largest && largest < MOST, "{largest}");
-    for _ in 0..200 {
-        step(&mut state);
-    }
-    let passes = state.scratch.damping_passes;
-    assert!(passes <= 220, "{passes} passes in 200 steps");
+    assert!(of_one_pass <= 202, "{of_one_pass} passes in 200 steps");
+    let (largest, of_stages) = passes(0.9);
+    assert!(largest > MOST && of_stages > 600, "{largest}: {of_stages}");
 }
 
 /// A bar that tumbles and vibrates: both momenta are kept to rounding, and the error of the energy
@@ -161,7 +160,9 @@ fn a_checkpoint_and_threads_do_not_change_a_bit() {
                     assert!(!state.damping_memory.is_empty());
                     let bytes = postcard::to_stdvec(&state).unwrap();
                     let copy: State = postcard::from_bytes(&bytes).unwrap();
-                    state = copy.rebuilt(state.model.clone(), partitions).unwrap();
+                    let mut model = state.model.clone();
+                    model.bond_rules = state.bonds.rules.clone();
+                    state = copy.rebuilt(model, partitions).unwrap();
                 }
             }
             state.particles.poses
