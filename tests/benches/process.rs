@@ -1,13 +1,14 @@
-//! The table of doc/real-time.md: what a second of a process costs, on one thread and on two, and
-//! how much bonds only where bodies can break save. `cargo bench -p dem-tests --bench process`,
-//! then the names of cases or nothing, and `--page FILE` to write it. A quarter of an hour; with
-//! the word `fine` cakes of 2,400 spheres, half an hour more.
+//! What a second of a process costs, on one thread and on two, and how much bonds only while bodies
+//! can break save: see doc/real-time.md. `cargo bench -p dem-tests --bench process`, then the names
+//! of cases or nothing. A quarter of an hour; with the word `fine` cakes of 2,400 spheres, half an
+//! hour more.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
     reason = "a benchmark stops where it fails, and prints a table"
 )]
 
+#[allow(dead_code, reason = "this table is on no page")]
 mod page;
 
 use std::collections::BTreeMap;
@@ -199,5 +200,4 @@ fn main() {
             one.per_s / two.per_s
         ));
     }
-    table.write("process");
 }

@@ -15,12 +15,12 @@ const BREAKABLE: [(&str, &str); 2] = [("cake", "filter-cake"), ("lump", "bar")];
 const WAYS: [(&str, &str); 4] = [
     ("rigid throughout", "{ when = { time = \"1000 s\" } }"),
     (
-        "replaced at the plate, and restored",
-        "{ when = { touches = \"plate\" }, restore = { unbroken_for = \"5 ms\", min_particles = 2, strain_energy = \"0.1 J/kg\", fluctuation_velocity = \"0.2 m/s\" } }",
+        "replaced at the plate, and restored behind it",
+        "{ when = { enters = \"impact\" }, restore = { leaves = \"impact\", min_particles = 2, strain_energy = \"1 J/kg\", fluctuation_velocity = \"0.2 m/s\" } }",
     ),
     (
-        "replaced at each hit, and restored",
-        "{ when = { touches = [\"plate\", \"product-belt\", \"left\", \"right\", \"back\", \"front\", \"rock\"], principal_stress = \"20 kPa\" }, restore = { unbroken_for = \"5 ms\", min_particles = 2, strain_energy = \"0.1 J/kg\", fluctuation_velocity = \"0.2 m/s\" } }",
+        "replaced at the plate",
+        "{ when = { enters = \"impact\" } }",
     ),
     ("bonded from the start", "{ when = { time = 0 } }"),
 ];
