@@ -73,7 +73,7 @@ pub(crate) fn tables() -> [Table; 1] {
     for (scene, _, readings) in SCENES {
         first_cells.extend(readings.iter().map(|_| format!("`{scene}.toml`")));
     }
-    first_cells.extend([(); 4].map(|()| format!("`chute.toml`, {SEEDS} seeds")));
+    first_cells.extend([(); 4].map(|()| format!("`chute-region.toml`, {SEEDS} seeds")));
     let head = "scene |  | never | `self_contact`";
     let page = "doc/self-contact.md";
     [Table::new(page, "self-contact", head, first_cells)]
@@ -124,7 +124,7 @@ fn chute(bench: &Bench, table: &mut Table) -> Result<(), Failed> {
     for seed in 0..SEEDS {
         let set = format!("--set=run.seed={seed}");
         let name = format!("chute-{seed}");
-        let both = each_way(bench, &name, "data/scenes/chute.toml", &[&set])?;
+        let both = each_way(bench, &name, "data/scenes/chute-region.toml", &[&set])?;
         for (run, runs) in both.into_iter().zip(&mut runs) {
             let masses = masses_kg(Pieces::Left, &run.folder)?;
             runs.push((run, masses));

@@ -79,10 +79,7 @@ fn says_what_limits_the_step_and_what_would_next() {
         })
     };
     let [fine, next] = limits("0.0025");
-    assert_eq!(
-        [&fine.0, &next.0],
-        ["impacts foreseen", "flat landings of clumps"]
-    );
+    assert_eq!([&fine.0, &next.0], ["impacts foreseen", "stability"]);
     // The usual accuracy, and twice its step.
     let [usual, coarse] = ["0.01", "0.04"].map(|accuracy| limits(accuracy)[0].clone());
     let fractions = [usual.1 / fine.1, coarse.1 / usual.1];

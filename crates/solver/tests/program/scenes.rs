@@ -166,7 +166,7 @@ const SHORT: [[&str; 4]; 41] = [
     ["hopkinson-tension", "60 us", "", ""],
     ["jaw-crusher", "0.1 s", "", ""],
     ["lifted-cylinder", "30 ms", "", ""],
-    ["lumps", "0.1 s", "rock", "5mm..6mm"],
+    ["lumps", "0.1 s", "", ""],
     ["one-cake", "60 ms", "", ""],
     ["pour-box", "20 ms", "", ""],
     ["penetration", "5 ms", "", ""],
