@@ -127,7 +127,11 @@ fn break_and_compare(
     for id in before.living() {
         if !splits.iter().any(|split| split.parent == id) {
             assert_eq!(clusters.members(id), before.members(id));
-            assert_eq!(clusters.history[id as usize], before.history[id as usize]);
+            let mut expected = before.history[id as usize];
+            if damaged.contains(&id) {
+                expected.unbroken_since_s = time_s;
+            }
+            assert_eq!(clusters.history[id as usize], expected);
         }
     }
     splits
