@@ -9,7 +9,7 @@ use crate::helpers::{started, step_and_balance};
 
 /// The page with the table.
 const PAGE: &str = "../../doc/running.md";
-const TABLE: [&str; 2] = ["<!-- table: impacts -->\n", "<!-- end of table -->"];
+const TABLE: [&str; 2] = ["<!-- impacts -->\n", "<!-- end of impacts -->"];
 
 const RADIUS_M: f64 = 5e-3;
 const SPEED_M_S: f64 = 1.0;
