@@ -8,22 +8,21 @@
     reason = "a benchmark stops where it fails, and prints a table"
 )]
 
+mod filled;
 mod page;
 mod reading;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::Path;
 use std::time::Instant;
 
 use dem_io::Body;
-use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::state::State;
 use dem_run::step::{stages, step};
 use dem_run::threads::keep_awake;
 
+use self::filled::{packed, shape};
 use self::page::{Table, words};
 
 /// Number of rounds, of which the median is taken.
@@ -270,11 +269,6 @@ fn go(state: &mut State, time_s: f64) {
     }
 }
 
-fn shape(name: &str) -> Vec<u8> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/shapes");
-    std::fs::read(folder.join(name).with_extension("stl")).expect("the shape is in the repository")
-}
-
 /// A block of 54 mm x 54 mm x 60 mm as STL, in mm.
 fn block() -> Vec<u8> {
     let corner = |n: usize| [(n & 4) * 54 / 4, (n & 2) * 27, (n & 1) * 60].map(|x| x as i64);
@@ -298,38 +292,6 @@ fn block() -> Vec<u8> {
     }
     text += "endsolid block\n";
     text.into_bytes()
-}
-
-/// A shape filled with spheres of these diameters. `bonds`: bonds per particle; none: bonds of
-/// spheres that overlap.
-fn packed(stl: &[u8], diameters: &str, overlap: f64, bonds: Option<f64>) -> Body {
-    let reading = ReadSettings {
-        unit_m: 1e-3,
-        scale: 1.0,
-        fill_holes: false,
-    };
-    let surface = surface_from_stl(stl, "", reading).expect("the shape is sound");
-    let sizes = Sizes::parse(diameters, Basis::Number).expect("good diameters");
-    let settings = BodySettings {
-        packing: PackSettings {
-            overlap,
-            ..PackSettings::new(sizes)
-        },
-        bonds: BondSettings {
-            range: if bonds.is_some() || overlap > 0.0 {
-                1.1
-            } else {
-                1.0
-            },
-            per_particle: bonds,
-            ..BondSettings::default()
-        },
-        particle_density_kg_m3: None,
-        solid_density_kg_m3: None,
-    };
-    make_body(&surface, &settings, &|_, _| Ok(()))
-        .expect("packs")
-        .0
 }
 
 fn main() {

@@ -8,21 +8,17 @@
     reason = "a benchmark stops where it fails, and prints a table"
 )]
 
-#[allow(dead_code, reason = "this table is on no page")]
-mod page;
+mod filled;
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use dem_io::Body;
-use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::step::step;
 use dem_run::threads::keep_awake;
 
-use self::page::{Table, words};
+use self::filled::{packed, shape};
 
 /// A scene of `data/scenes` whose steps are timed from one time to another.
 struct Case {
@@ -124,7 +120,10 @@ impl Case {
         let set: Vec<String> = self.set.iter().map(|&set| set.to_owned()).collect();
         let scene = dem_scene::read_scene(&file, &set).expect("a scene");
         let bodies = match self.diameters {
-            Some(diameters) => BTreeMap::from([("cake".to_owned(), cake(&root, diameters))]),
+            Some(diameters) => {
+                let cake = packed(&shape("filter-cake"), diameters, 0.25, None);
+                BTreeMap::from([("cake".to_owned(), cake)])
+            }
             None => dem_scene::read_bodies(&scene).expect("bodies"),
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -149,55 +148,30 @@ impl Case {
     }
 }
 
-/// A filter cake of spheres of these diameters.
-fn cake(root: &Path, diameters: &str) -> Body {
-    let reading = ReadSettings {
-        unit_m: 1e-3,
-        scale: 1.0,
-        fill_holes: false,
-    };
-    let stl = std::fs::read(root.join("data/shapes/filter-cake.stl")).expect("the shape is there");
-    let surface = surface_from_stl(&stl, "", reading).expect("the shape is sound");
-    let sizes = Sizes::parse(diameters, Basis::Number).expect("good diameters");
-    let settings = BodySettings {
-        packing: PackSettings {
-            overlap: 0.25,
-            ..PackSettings::new(sizes)
-        },
-        bonds: BondSettings {
-            range: 1.1,
-            ..BondSettings::default()
-        },
-        particle_density_kg_m3: None,
-        solid_density_kg_m3: None,
-    };
-    make_body(&surface, &settings, &|_, _| Ok(()))
-        .expect("the shape is filled")
-        .0
-}
-
 fn main() {
-    let asked = words();
+    let words = std::env::args().skip(1);
+    let asked: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
     let is_asked = |case: &&Case| match case.diameters {
         Some(_) => asked.iter().any(|word| word == "fine"),
         None => asked.is_empty() || asked.iter().any(|word| word == case.name),
     };
-    let mut table = Table::new();
-    table.row("| scene | steps | bonds broken | run time over simulated time, one thread | times as fast as bonded from the start | two threads: times as fast |");
-    table.row("|---|---|---|---|---|---|");
+    println!(
+        "| scene | steps | bonds broken | run time over simulated time, one thread | times as fast as bonded from the start | two threads: times as fast |"
+    );
+    println!("|---|---|---|---|---|---|");
     let mut costs: BTreeMap<&str, f64> = BTreeMap::new();
     for case in CASES.iter().filter(is_asked) {
         let [one, two] = [1, 2].map(|threads| case.cost(threads));
         costs.insert(case.name, one.per_s);
         let beside = case.beside.and_then(|name| costs.get(name));
         let faster = beside.map_or_else(String::new, |beside| format!("{:.1}", beside / one.per_s));
-        table.row(&format!(
+        println!(
             "| `{}` | {} | {} | {:.2} | {faster} | {:.2} |",
             case.name,
             one.steps,
             one.broken,
             one.per_s,
             one.per_s / two.per_s
-        ));
+        );
     }
 }

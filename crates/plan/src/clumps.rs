@@ -225,8 +225,7 @@ pub(super) fn need_pairs(
     let described: Vec<_> = described.collect();
     for (n, template) in templates.iter().enumerate() {
         let own = usize::from(template.material);
-        let by_inlet = (scene.inlets.values())
-            .any(|inlet| inlet.bodies.iter().any(|(name, _)| *name == template.body));
+        let by_inlet = (scene.inlets.values()).any(|inlet| inlet.feeds(&template.body));
         if by_inlet || scene.replacement.contains_key(&template.body) {
             let who = || format!("the bodies '{}' and their pieces need", template.body);
             kinds.need(scene, [own; 2], who)?;

@@ -72,10 +72,9 @@ pub(super) fn refuse_untouchable(scene: &Scene, template: &Template) -> Result<(
         let problem = "nothing can touch anything: the scene has no [contacts]";
         return Err(Diagnostic::input(place(), problem, "add [contacts]"));
     }
-    let mut inlets = scene.inlets.values();
-    let is_fed = inlets.any(|inlet| inlet.bodies.iter().any(|(fed, _)| fed == body));
+    let is_fed = (scene.inlets.values()).any(|inlet| inlet.feeds(body));
     let is_alone = !is_fed && !scene.walls.contains_key(body);
-    if is_alone && names.iter().all(|name| name == body) && !names.is_empty() {
+    if is_alone && !names.is_empty() && names.iter().all(|name| name == body) {
         let problem =
             format!("names '{body}' alone, of which there is one: it cannot touch itself");
         let remedy = "name a wall or another body";

@@ -33,7 +33,7 @@ pub(super) fn refuse_falls(
             let problem = "needs gravity, and there is none";
             return Err(field.fault(problem, "add gravity = [0, 0, -9.81] to [run]"));
         }
-        if let Some((inlet, _)) = inlets.iter().find(|(_, inlet)| feeds(inlet, name)) {
+        if let Some((inlet, _)) = inlets.iter().find(|(_, inlet)| inlet.feeds(name)) {
             let problem = format!(
                 "is of the start, but [inlets.{inlet}] feeds the body: it is not there then"
             );
@@ -49,8 +49,4 @@ pub(super) fn refuse_falls(
         }
     }
     Ok(())
-}
-
-fn feeds(inlet: &Inlet, body: &str) -> bool {
-    inlet.bodies.iter().any(|(name, _)| name == body)
 }

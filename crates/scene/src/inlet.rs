@@ -79,6 +79,13 @@ pub struct Inlet {
     pub count: Option<u32>,
 }
 
+impl Inlet {
+    /// Whether it feeds the body of this name.
+    pub fn feeds(&self, body: &str) -> bool {
+        self.bodies.iter().any(|(name, _)| name == body)
+    }
+}
+
 /// What the proportions of an inlet's bodies are of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SharesBy {

@@ -106,7 +106,7 @@ impl Presence<'_> {
     }
 
     fn later(&self, name: &str) -> Option<Absence> {
-        let feeds = |(_, inlet): &(&String, &Inlet)| inlet.bodies.iter().any(|(of, _)| of == name);
+        let feeds = |(_, inlet): &(&String, &Inlet)| inlet.feeds(name);
         if let Some(parent) = parent_of(name, self.replacement) {
             return Some(Absence {
                 why: format!("daughters of '{parent}': it is not there at the start"),

@@ -75,10 +75,7 @@ fn check_body(field: &Field<'_>, name: &str, body: &BodyEntry, known: &Known<'_>
         let remedy = "take a model other than flat-joint, without plasticity, in its [bonds]";
         return Err(field.refuse(problem, remedy));
     }
-    let fed = known
-        .inlets
-        .iter()
-        .find(|(_, inlet)| inlet.bodies.iter().any(|(of, _)| of == name));
+    let fed = known.inlets.iter().find(|(_, inlet)| inlet.feeds(name));
     if let Some((inlet, _)) = fed {
         let problem = format!("{path}: [inlets.{inlet}] feeds body '{name}'");
         return Err(field.refuse(problem, "place it in the scene, or remove it"));

@@ -326,7 +326,7 @@ when = {{ {} }}
             );
         }
         if self.restores && !is_bonded {
-            scene += "restore = { leaves = \"far\", min_particles = 2, strain_energy = \"1e6 J/kg\", fluctuation_velocity = \"100 m/s\" }
+            scene += "restore = { leaves = \"far\", min_particles = 2, strain_energy = \"1e6 J/kg\", fluctuation_velocity = \"0.1 m/s\" }
 [regions.far]
 box = { min = [1, 1, 1], max = [2, 2, 2] }
 ";

@@ -12,6 +12,13 @@ use super::{HEAD, block, happens, planned};
 
 const STEP_S: f64 = 1e-6;
 
+/// The state of a scene, with steps of this length.
+fn stepping(text: &str) -> State {
+    let mut plan = planned(text);
+    plan.state.time_step_s = STEP_S;
+    plan.state
+}
+
 /// Two spheres side by side that move down at 1 m/s, from 1 mm above the ground, and rebound from it
 /// and from a ceiling.
 fn bouncing(rule: &str) -> State {
@@ -23,9 +30,7 @@ fn bouncing(rule: &str) -> State {
          [walls.ceiling]\nplane = {{ point = [0, 0, 3.5e-3], normal = [0, 0, -1] }}\nmaterial = \"stuff\"\n\
          [replacement.pair]\n{rule}\n"
     );
-    let mut plan = planned(&text);
-    plan.state.time_step_s = STEP_S;
-    plan.state
+    stepping(&text)
 }
 
 /// Times and causes of the replacements until this time, and the times at which it became rigid.
@@ -89,9 +94,7 @@ fn a_body_that_is_named_replaces_and_another_does_not() {
             ball("above", 4.5e-3),
             ball("below", -3e-3)
         );
-        let mut plan = planned(&text);
-        plan.state.time_step_s = STEP_S;
-        replacements(&mut plan.state, 0.7e-3).0
+        replacements(&mut stepping(&text), 0.7e-3).0
     };
     // The gap to the upper ball is 0.5 mm, to the lower one 1 mm.
     let [(at_s, "touches")] = touched_by("above")[..] else {
@@ -137,9 +140,7 @@ fn resting(more: &str) -> State {
          [replacement.pair]\nwhen = {{ touches = \"ground\" }}\n\
          restore = {{ unbroken_for = 3e-4, min_particles = 2, strain_energy = 1e3, fluctuation_velocity = 10 }}\n"
     );
-    let mut plan = planned(&text);
-    plan.state.time_step_s = STEP_S;
-    plan.state
+    stepping(&text)
 }
 
 #[test]

@@ -162,21 +162,21 @@ impl Waiting {
         let Some(clusters) = &state.clusters else {
             return;
         };
-        for event in &state.scratch.events.population {
-            if let PopulationEvent::Restored { cluster, .. } = event {
-                self.bodies.remove(cluster);
-            }
-        }
         let mut begun = BTreeMap::new();
         for event in &state.scratch.events.population {
-            if let PopulationEvent::Replaced {
-                cluster,
-                body,
-                cause: "enters" | "time",
-                ..
-            } = event
-            {
-                begun.insert(*cluster, body.clone());
+            match event {
+                PopulationEvent::Restored { cluster, .. } => {
+                    self.bodies.remove(cluster);
+                }
+                PopulationEvent::Replaced {
+                    cluster,
+                    body,
+                    cause: "enters" | "time",
+                    ..
+                } => {
+                    begun.insert(*cluster, body.clone());
+                }
+                _ => {}
             }
         }
         let ids = self.bodies.keys().chain(begun.keys()).copied().collect();

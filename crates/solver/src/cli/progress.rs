@@ -18,7 +18,6 @@ const SHORT_S: f64 = 30.0;
 /// Shows how far a run has come.
 pub(super) struct ShownProgress {
     bar: ProgressBar,
-    begun: Instant,
     pace: RefCell<Pace>,
     /// None on a terminal, and if nothing is to be shown.
     log: Option<RefCell<Log>>,
@@ -45,8 +44,8 @@ struct Tenths {
 }
 
 impl Tenths {
-    /// The time left, `left_s`, if a line is due at this fraction of the run, `elapsed_s` after its begin:
-    /// at each tenth of a run that will take [`SHORT_S`], and once that time has passed.
+    /// The time left, `left_s`, if a line is due at this fraction of the run, `elapsed_s` after its
+    /// begin: at each tenth of a run that will take [`SHORT_S`], and once that time has passed.
     fn due(&mut self, fraction: f64, elapsed_s: f64, left_s: Option<f64>) -> Option<f64> {
         let first = *self.first.get_or_insert(fraction);
         let tenths = (10.0 * fraction + 1e-9) as u32;
@@ -70,7 +69,6 @@ impl ShownProgress {
         let template = "run {prefix}[{bar:30}] {percent:>3} %  {msg}";
         Self {
             bar: progress_bar(quiet, 1000, template),
-            begun: Instant::now(),
             pace: RefCell::default(),
             log,
         }
@@ -88,7 +86,7 @@ impl ShownProgress {
     /// Shows how far the run has come.
     pub(super) fn tell(&self, so_far: &SoFar) {
         self.bar.set_position((1000.0 * so_far.fraction) as u64);
-        let elapsed_s = self.begun.elapsed().as_secs_f64();
+        let elapsed_s = self.bar.elapsed().as_secs_f64();
         let left_s = self.pace.borrow_mut().left_s(so_far.fraction, elapsed_s);
         let left = left_s.map_or_else(String::new, left_in_words);
         self.bar.set_message(format!("{so_far}  {left}"));

@@ -24,19 +24,11 @@ pub(super) fn find_squeezes(state: &State, squeezes: &mut Vec<Squeeze>) -> usize
     of_pairs(state, contacts, squeezes) + of_walls(state, contacts, squeezes)
 }
 
-/// The clump of a particle. None: it is free.
-pub(super) fn clump_of(state: &State, particle: u32) -> Option<usize> {
-    let clumps = &state.clumps.all;
-    clumps
-        .partition_point(|clump| clump.first <= particle)
-        .checked_sub(1)
-}
-
 fn of_pairs(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) -> usize {
     let (p, mut read) = (&state.particles, 0);
     let touching = contacts.pairs.iter().zip(&contacts.histories);
     for (&pair, history) in touching.filter(|(_, history)| history.overlap_m() > 0.0) {
-        let clumps = pair.map(|i| clump_of(state, i));
+        let clumps = pair.map(|i| state.clumps.carrier_of(i as usize));
         if clumps == [None; 2] {
             continue;
         }
@@ -59,7 +51,7 @@ fn of_walls(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) -> usi
     for wall in &state.walls {
         let touching = wall.touching.iter();
         for touch in touching.filter(|touch| touch.history.overlap_m() > 0.0) {
-            let Some(clump) = clump_of(state, touch.particle) else {
+            let Some(clump) = state.clumps.carrier_of(touch.particle as usize) else {
                 continue;
             };
             read += 1;

@@ -1,6 +1,5 @@
 //! Clumps that touch the walls and bodies that their triggers name.
 
-use super::contact_stress::clump_of;
 use crate::state::State;
 use crate::state::rules::Touches;
 
@@ -33,7 +32,7 @@ fn by_walls(state: &State, touched: &mut [bool]) -> usize {
         }
         let touching = wall.touching.iter();
         for touch in touching.filter(|touch| touch.history.overlap_m() > 0.0) {
-            let Some(clump) = clump_of(state, touch.particle) else {
+            let Some(clump) = state.clumps.carrier_of(touch.particle as usize) else {
                 continue;
             };
             read += 1;
@@ -58,7 +57,7 @@ fn by_bodies(state: &State, touched: &mut [bool]) -> usize {
     let touching = contacts.pairs.iter().zip(&contacts.histories);
     for (&[a, b], _) in touching.filter(|(_, history)| history.overlap_m() > 0.0) {
         for (own, other) in [(a, b), (b, a)] {
-            let Some(clump) = clump_of(state, own) else {
+            let Some(clump) = state.clumps.carrier_of(own as usize) else {
                 continue;
             };
             read += 1;

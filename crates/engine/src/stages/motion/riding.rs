@@ -21,6 +21,18 @@ const STEPS_LEFT: f64 = 2.0;
 /// Boxes are larger by this part of the skin, for rounding.
 const ROUNDING: f64 = 0.01;
 
+/// The sleepers, if any of them ride.
+fn with_riders(state: &State) -> Option<&Sleep> {
+    let sleep = state.sleep.as_ref();
+    sleep.filter(|sleep| !sleep.riders.is_empty())
+}
+
+/// The particles of a cluster.
+fn members(state: &State, cluster: u32) -> &[u32] {
+    let clusters = state.clusters.as_ref();
+    clusters.map_or(&[], |clusters| clusters.members(cluster))
+}
+
 /// Moves riders: clumps as a whole, without their spheres. Returns their number.
 pub(crate) fn drift_riders(state: &mut State) -> usize {
     let (Some(sleep), Some(clusters)) = (&state.sleep, &state.clusters) else {
@@ -87,11 +99,7 @@ pub(crate) fn use_up_approach(sleep: &mut Sleep, moved_m: f64, time_step_s: f64)
 /// Whether a rider could come near something in the next steps, or its wall ceases to move
 /// steadily.
 pub(crate) fn is_due(state: &State) -> bool {
-    let Some(sleep) = state
-        .sleep
-        .as_ref()
-        .filter(|sleep| !sleep.riders.is_empty())
-    else {
+    let Some(sleep) = with_riders(state) else {
         return false;
     };
     let soon_s = STEPS_LEFT * state.time_step_s;
@@ -155,11 +163,7 @@ fn groups(state: &State, sleep: &Sleep) -> Vec<Group> {
 
 /// The place of a body: of the clump, or of its first particle, m.
 fn place_m(state: &State, cluster: u32) -> [f64; 3] {
-    let members = state
-        .clusters
-        .as_ref()
-        .map(|clusters| clusters.members(cluster));
-    let Some(&first) = members.and_then(<[u32]>::first) else {
+    let Some(&first) = members(state, cluster).first() else {
         return [0.0; 3];
     };
     match state.clumps.carrier_of(first as usize) {
@@ -170,11 +174,7 @@ fn place_m(state: &State, cluster: u32) -> [f64; 3] {
 
 /// The corners of the box around a body whose spheres are in place, relative to its place, m.
 pub(super) fn box_around(state: &State, cluster: u32) -> [[f64; 3]; 2] {
-    let members = state
-        .clusters
-        .as_ref()
-        .map(|clusters| clusters.members(cluster));
-    let members = members.unwrap_or_default().iter();
+    let members = members(state, cluster).iter();
     let balls = members.map(|&i| around(&state.particles.poses[i as usize].position_m));
     let bounds = balls.fold(Bounds::EMPTY, |all, ball| all.with(&ball));
     let bounds = bounds.moved(place_m(state, cluster).map(|x| -x));
@@ -189,11 +189,7 @@ fn bounds_of(state: &State, rider: &Rider) -> Bounds {
 
 /// Puts the spheres of a rider in place, if it is a clump. Returns its particles.
 fn place_rider(state: &mut State, cluster: u32) -> Vec<u32> {
-    let members = state
-        .clusters
-        .as_ref()
-        .map(|clusters| clusters.members(cluster).to_vec());
-    let members = members.unwrap_or_default();
+    let members = members(state, cluster).to_vec();
     let carrier = members
         .first()
         .and_then(|&i| state.clumps.carrier_of(i as usize));
@@ -207,11 +203,7 @@ fn place_rider(state: &mut State, cluster: u32) -> Vec<u32> {
 /// Puts the riders in place that overlap these boxes around what is awake, and lists their
 /// particles that do.
 pub(crate) fn list_riders_beside(state: &mut State, awake: &[Bounds]) -> Vec<u32> {
-    let Some(sleep) = state
-        .sleep
-        .as_ref()
-        .filter(|sleep| !sleep.riders.is_empty())
-    else {
+    let Some(sleep) = with_riders(state) else {
         return Vec::new();
     };
     let all = awake.iter().fold(Bounds::EMPTY, |all, part| all.with(part));
@@ -243,11 +235,7 @@ pub(crate) fn at_edges(state: &State) -> Vec<u32> {
 /// otherwise.
 pub(crate) fn riders_near(state: &mut State, skin_m: f64) -> Vec<u32> {
     let mut near = Vec::new();
-    let Some(sleep) = state
-        .sleep
-        .as_ref()
-        .filter(|sleep| !sleep.riders.is_empty())
-    else {
+    let Some(sleep) = with_riders(state) else {
         return near;
     };
     let margin_m = (1.0 + ROUNDING) * skin_m;
@@ -357,11 +345,7 @@ fn wall_gap_m(wall: &Wall, bounds: &Bounds) -> f64 {
 /// Finds when riders are to be looked at again, after nothing near them was found. `awake`: boxes
 /// around what is awake, larger by the skin, m.
 pub(crate) fn look_ahead(state: &mut State, awake: &[Bounds], skin_m: f64) {
-    let Some(sleep) = state
-        .sleep
-        .as_ref()
-        .filter(|sleep| !sleep.riders.is_empty())
-    else {
+    let Some(sleep) = with_riders(state) else {
         return;
     };
     let all_awake = awake.iter().fold(Bounds::EMPTY, |all, part| all.with(part));
