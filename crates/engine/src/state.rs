@@ -241,9 +241,24 @@ impl State {
         self.most_damping_rate_1_s = f64::INFINITY;
     }
 
+    /// Number of partitions that the work is worth now: bodies come, leave, fall asleep and wake.
+    pub(crate) fn wanted_partitions(&self) -> usize {
+        let threads = self.scratch.threads;
+        let [asleep, bonds_asleep] = match &self.sleep {
+            Some(sleep) => [sleep.particles, sleep.bonds as usize],
+            None => [0; 2],
+        };
+        let particles = self.particles.len().saturating_sub(asleep);
+        let bonds = self.bonds.len().saturating_sub(bonds_asleep);
+        match (particles + bonds).checked_div(self.scratch.worth_a_thread) {
+            Some(more) => threads.min(1 + more),
+            None => threads,
+        }
+    }
+
     /// Divides the work on particles and bonds again.
     pub(crate) fn divide_bonds(&mut self) {
-        let (free, threads) = (self.particles.free, self.scratch.threads);
+        let (free, threads) = (self.particles.free, self.wanted_partitions());
         self.scratch.partitions = divide_busy(&self.bonds, free, threads, self.idle());
     }
 
@@ -272,8 +287,8 @@ impl State {
     }
 
     /// The state from a checkpoint, with the model planned for it and everything that can be
-    /// rebuilt, for this number of threads. None: the two do not belong together.
-    pub fn rebuilt(mut self, model: Model, threads: usize) -> Option<Self> {
+    /// rebuilt, for the threads of this scratch. None: the two do not belong together.
+    pub fn rebuilt(mut self, model: Model, planned: &Scratch) -> Option<Self> {
         let of_fragments = self.population.fragments.iter_mut();
         for fragment in of_fragments {
             let bonds = &mut Arc::make_mut(&mut fragment.template).bonds;
@@ -294,7 +309,8 @@ impl State {
             contacts.model = Arc::clone(model.contacts.as_ref()?);
         }
         self.model = model;
-        self.scratch.threads = threads;
+        self.scratch.threads = planned.threads;
+        self.scratch.worth_a_thread = planned.worth_a_thread;
         self.rigid_parts.number(self.particles.free, &self.bonds);
         // Bonds that broke since it was found still count.
         let damping_rate_1_s = self.damping_rate_1_s;

@@ -43,14 +43,11 @@ use dem_engine::stages::bonds::damping::WEAK;
 use dem_engine::stages::ledger::bookkeeping::opened;
 use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
-use dem_engine::state::bonds::Bonds;
-use dem_engine::state::clumps::Template;
 use dem_engine::state::clusters::Clusters;
 use dem_engine::state::clusters::sizes::{Sphere, sieve_m};
 use dem_engine::state::events::TopologyChange;
 use dem_engine::state::loads::GroupLoad;
 use dem_engine::state::model::NamedBody;
-use dem_engine::state::particles::Particles;
 use dem_engine::state::population::{InletProgress, OutletTotals};
 use dem_engine::state::sleep::{Sleep, SleepRule};
 use dem_engine::state::supports::GroupSupport;
@@ -144,14 +141,12 @@ pub fn plan(
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let masses = masses::masses(scene, &about, &templates, &bodies, &particles);
     let groups = resolve_groups(scene, &bodies, &particles)?;
-    let threads = threads.min(enough_threads(&particles, &bonds, &templates));
     let mut state = State::new(particles, bonds, 1.0, threads);
+    state.scratch.worth_a_thread = WORTH_A_THREAD;
     state.model.bodies = named;
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;
     state.model.particle_damping = scene.run.local_damping;
-    if state.model.particle_damping > 0.0 {
-        state.divide();
-    }
+    state.divide();
     state.supports = supports(scene, &groups)?;
     start(scene, &groups, &bodies, &mut state)?;
     state.loads = loads(scene, &groups, &state.supports)?;
@@ -277,13 +272,6 @@ fn refuse_endless_damping(scene: &Scene, state: &State) -> Result<()> {
         ),
         "write a smaller damping_ratio, damping_coefficient or structural_damping, or a smaller time step; above some 10, damping_ratio makes a bond stiff rather than damped",
     ))
-}
-
-/// Number of threads that this many particles and bonds are worth.
-fn enough_threads(particles: &Particles, bonds: &Bonds, templates: &[Arc<Template>]) -> usize {
-    let size = |template: &Arc<Template>| template.spheres.len() + template.bonds.len();
-    let of_templates = templates.iter().map(size).sum::<usize>();
-    1 + (particles.len() + bonds.len() + of_templates) / WORTH_A_THREAD
 }
 
 /// Chooses the time step, and sets what follows from it in the state: the step itself, the largest

@@ -149,7 +149,7 @@ impl<'a> Snapshot<'a> {
         let is_same = self.fingerprint == fingerprint;
         let planned = std::mem::take(&mut state.model);
         let restored = self.state.clone().into_owned();
-        let restored = restored.rebuilt(planned, state.scratch.threads);
+        let restored = restored.rebuilt(planned, &state.scratch);
         let of_run = &self.instructions;
         *state =
             (restored.filter(|_| is_same)).ok_or_else(|| other_bodies(of_run, instructions()))?;

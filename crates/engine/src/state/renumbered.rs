@@ -15,8 +15,8 @@ pub(crate) struct NewNumbers<'a> {
     pub(crate) poses: &'a [Pose],
     /// For each new particle, its material if it did not exist before.
     pub(crate) materials_of_new: &'a [Option<u8>],
-    /// Number of threads for which work is divided.
-    pub(crate) threads: usize,
+    /// Number of partitions into which work is divided.
+    pub(crate) partitions: usize,
 }
 
 impl NewNumbers<'_> {

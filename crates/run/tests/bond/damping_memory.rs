@@ -152,6 +152,7 @@ fn a_checkpoint_and_threads_do_not_change_a_bit() {
         with_threads(threads, || {
             let mut state = shaken(0.2);
             state.scratch.threads = partitions;
+            state.scratch.worth_a_thread = 0;
             state.divide();
             state.time_step_s = 2.0 / state.damping_rate_1_s;
             for n in 0..100 {
@@ -162,7 +163,7 @@ fn a_checkpoint_and_threads_do_not_change_a_bit() {
                     let copy: State = postcard::from_bytes(&bytes).unwrap();
                     let mut model = state.model.clone();
                     model.bond_rules = state.bonds.rules.clone();
-                    state = copy.rebuilt(model, partitions).unwrap();
+                    state = copy.rebuilt(model, &state.scratch).unwrap();
                 }
             }
             state.particles.poses

@@ -413,7 +413,7 @@ fn what_it_takes_beside_other_models_is_booked_and_resumed() {
             if resumed.is_none() && state.time_s > 3e-3 {
                 let saved = postcard::to_stdvec(&state).unwrap();
                 let copy: State = postcard::from_bytes(&saved).unwrap();
-                resumed = copy.rebuilt(state.model.clone(), 1);
+                resumed = copy.rebuilt(state.model.clone(), &state.scratch);
                 assert!(resumed.is_some(), "{name}");
             }
             interact(&mut state);

@@ -79,7 +79,9 @@ fn a_checkpoint_keeps_the_bridges() {
     }
     let saved = postcard::to_stdvec(&state).unwrap();
     let resumed: State = postcard::from_bytes(&saved).unwrap();
-    let mut resumed = resumed.rebuilt(state.model.clone(), 1).unwrap();
+    let mut resumed = resumed
+        .rebuilt(state.model.clone(), &state.scratch)
+        .unwrap();
     assert_eq!(resumed.bridges, state.bridges);
     for _ in 0..1000 {
         step_and_balance(&mut state);

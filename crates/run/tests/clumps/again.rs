@@ -30,6 +30,7 @@ pub(crate) fn busy(threads: usize) -> Plan {
     }
     // Outside this test, this few particles do not justify a second thread.
     state.scratch.threads = threads;
+    state.scratch.worth_a_thread = 0;
     state.scratch.partitions = divide(&state.bonds, state.particles.free, threads);
     let count = state.particles.len();
     if let Some(contacts) = &mut state.contacts {

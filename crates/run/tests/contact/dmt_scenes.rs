@@ -135,7 +135,9 @@ fn a_checkpoint_while_spheres_stick_continues_with_the_same_bits() {
     }
     let saved = postcard::to_stdvec(&state).unwrap();
     let resumed: State = postcard::from_bytes(&saved).unwrap();
-    let mut resumed = resumed.rebuilt(state.model.clone(), 1).unwrap();
+    let mut resumed = resumed
+        .rebuilt(state.model.clone(), &state.scratch)
+        .unwrap();
     for _ in 0..1000 {
         step_and_balance(&mut state);
         step_and_balance(&mut resumed);

@@ -90,6 +90,7 @@ fn threads_and_interruptions_do_not_change_a_bit() {
         let state = &mut plan.state;
         disturb(state, 0.05);
         state.scratch.threads = threads;
+        state.scratch.worth_a_thread = 0;
         state.divide();
         let count = state.particles.len();
         if let Some(contacts) = &mut state.contacts {

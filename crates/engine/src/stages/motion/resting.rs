@@ -18,62 +18,85 @@ use dem_io::disjoint::{find, join};
 /// Interval between checks for slow bodies, in steps.
 pub(super) const EVERY: u64 = 100;
 
-/// For each cluster the velocity of the surface on which it is slowest, m/s, and an upper bound of
-/// the speed of its points relative to that; none if it has ended or sleeps.
-pub(super) fn slowest_m_s(state: &State) -> Vec<Option<([f64; 3], f64)>> {
-    let ground = [0.0; 3];
-    let on_ground = speeds_m_s(state, ground).into_iter();
-    let mut slowest: Vec<_> = on_ground.map(|s| s.map(|speed| (ground, speed))).collect();
-    let mut known = vec![ground];
-    for wall in &state.walls {
-        let steady = steady_velocity_m_s(wall, state.moment());
-        let carried = steady.and_then(|velocity| carrying_velocity_m_s(wall, velocity));
-        let Some(velocity) = carried.filter(|velocity| !known.contains(velocity)) else {
-            continue;
-        };
-        known.push(velocity);
-        for (least, speed) in slowest.iter_mut().zip(speeds_m_s(state, velocity)) {
-            let is_slower = |least: &([f64; 3], f64)| speed.is_some_and(|speed| speed < least.1);
-            if least.as_ref().is_some_and(is_slower) {
-                *least = speed.map(|speed| (velocity, speed));
-            }
-        }
-    }
-    slowest
+/// A body that is awake.
+pub(super) struct AwakeBody {
+    pub(super) cluster: u32,
+    /// Velocity of the surface on which it is slowest, m/s.
+    pub(super) surface_m_s: [f64; 3],
+    /// Upper bound of the speed of its points relative to that, m/s.
+    pub(super) speed_m_s: f64,
 }
 
-/// For each cluster an upper bound of the speed of its points relative to a velocity, m/s; none if
-/// it has ended or sleeps.
-fn speeds_m_s(state: &State, relative_to: [f64; 3]) -> Vec<Option<f64>> {
+/// The bodies that are awake, by the numbers of their clusters.
+pub(super) fn awake_bodies(state: &State) -> Vec<AwakeBody> {
     let Some(clusters) = &state.clusters else {
         return Vec::new();
     };
-    let mut speeds: Vec<Option<f64>> = vec![None; clusters.history.len()];
+    let p = &state.particles;
+    let chunks = chunks_of(p.free).filter(|&chunk| !p.asleep.is_whole(chunk));
+    let awake = chunks.flat_map(|chunk| chunk_of(chunk, p.free));
+    let awake: Vec<usize> = awake.filter(|&i| !p.sleeps(i)).collect();
+    let clumps = state.clumps.all.iter().filter(|clump| !clump.asleep);
+    let mut all: Vec<u32> = awake.iter().map(|&i| clusters.of_particle[i]).collect();
+    all.dedup();
+    all.extend(clumps.map(|clump| clump.cluster));
+    all.sort_unstable();
+    all.dedup();
+    let on_ground = speeds_m_s(state, &all, &awake, [0.0; 3]);
+    let of_body = |(cluster, speed_m_s)| AwakeBody {
+        cluster,
+        surface_m_s: [0.0; 3],
+        speed_m_s,
+    };
+    let mut bodies: Vec<AwakeBody> = all.iter().copied().zip(on_ground).map(of_body).collect();
+    let mut known = vec![[0.0; 3]];
+    for wall in &state.walls {
+        let steady = steady_velocity_m_s(wall, state.moment());
+        let carried = steady.and_then(|velocity| carrying_velocity_m_s(wall, velocity));
+        let Some(surface_m_s) = carried.filter(|velocity| !known.contains(velocity)) else {
+            continue;
+        };
+        known.push(surface_m_s);
+        let speeds = speeds_m_s(state, &all, &awake, surface_m_s);
+        for (body, speed_m_s) in bodies.iter_mut().zip(speeds) {
+            if speed_m_s < body.speed_m_s {
+                (body.surface_m_s, body.speed_m_s) = (surface_m_s, speed_m_s);
+            }
+        }
+    }
+    bodies
+}
+
+/// For each of these clusters an upper bound of the speed of its points relative to a velocity, m/s.
+/// `awake`: the free particles that are awake.
+fn speeds_m_s(
+    state: &State,
+    of_clusters: &[u32],
+    awake: &[usize],
+    relative_to: [f64; 3],
+) -> Vec<f64> {
+    let mut speeds = vec![0.0_f64; of_clusters.len()];
     let mut note = |id: u32, speed_m_s: f64| {
-        let largest = &mut speeds[id as usize];
-        *largest = Some(largest.map_or(speed_m_s, |before| before.max(speed_m_s)));
+        if let Ok(at) = of_clusters.binary_search(&id) {
+            speeds[at] = speeds[at].max(speed_m_s);
+        }
     };
     let norm = |v: [f64; 3]| Vector3::from(v).norm();
     let relative = |v: [f64; 3]| [0, 1, 2].map(|k| v[k] - relative_to[k]);
-    let p = &state.particles;
-    let awake = chunks_of(p.free).filter(|&chunk| !p.asleep.is_whole(chunk));
-    let awake = awake.flat_map(|chunk| chunk_of(chunk, p.free));
-    for i in awake.filter(|&i| !p.sleeps(i)) {
+    let (p, clusters) = (&state.particles, state.clusters.as_ref());
+    let of_particle = clusters.map_or(&[][..], |clusters| &clusters.of_particle);
+    for &i in awake {
         let motion = &p.motions[i];
         let turning_m_s = norm(motion.spin_rad_s) * p.poses[i].radius_m();
-        note(
-            clusters.of_particle[i],
-            norm(relative(motion.velocity_m_s)) + turning_m_s,
-        );
+        let speed_m_s = norm(relative(motion.velocity_m_s)) + turning_m_s;
+        note(of_particle[i], speed_m_s);
     }
     for clump in state.clumps.all.iter().filter(|clump| !clump.asleep) {
         let template = state.clumps.template(clump);
         let reach_m = template.largest_reach_m();
         let turning_m_s = clump.spin_rad_s(template).norm() * reach_m;
-        note(
-            clump.cluster,
-            norm(relative(clump.velocity_m_s)) + turning_m_s,
-        );
+        let speed_m_s = norm(relative(clump.velocity_m_s)) + turning_m_s;
+        note(clump.cluster, speed_m_s);
     }
     speeds
 }

@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use super::resting::{EVERY, at_rest_together, slowest_m_s};
+use super::resting::{EVERY, at_rest_together, awake_bodies};
 use super::riding::riders_near;
 use crate::stages::clumps::motion::{place_spheres, synchronous};
 use crate::stages::contacts::forces::contact_energy_j;
@@ -21,7 +21,6 @@ use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::events::SleepEvent;
 use crate::state::events::TopologyChange;
 use crate::state::particles::Wrench;
-use crate::state::partitions::{Idle, divide_busy};
 use crate::state::sleep::mask::Asleep;
 use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Rider, Sleep};
 use crate::state::walls::{Wall, WallLoad};
@@ -63,29 +62,36 @@ pub(crate) fn update_sleep(state: &mut State) -> usize {
     if state.sleep.is_none() || !state.steps.is_multiple_of(EVERY) {
         return 0;
     }
-    let slowest_m_s = slowest_m_s(state);
+    let awake = awake_bodies(state);
     let (Some(rule), Some(sleep), Some(clusters)) =
         (state.model.sleep, &mut state.sleep, &state.clusters)
     else {
         return 0;
     };
-    sleep
-        .of_cluster
-        .resize(clusters.history.len(), ClusterSleep::AWAKE);
-    let slow_for =
-        |body: &ClusterSleep| !body.asleep && state.time_s - body.slow_since_s >= rule.after_s;
-    for (body, slowest) in sleep.of_cluster.iter_mut().zip(slowest_m_s) {
-        let is_slow = |(_, speed_m_s): &([f64; 3], f64)| *speed_m_s < rule.speed_m_s;
-        let Some((velocity_m_s, _)) = slowest.filter(is_slow) else {
+    let all = clusters.history.len();
+    sleep.of_cluster.resize(all, ClusterSleep::AWAKE);
+    let mut slow: Vec<u32> = Vec::new();
+    for one in awake {
+        let body = &mut sleep.of_cluster[one.cluster as usize];
+        if one.speed_m_s >= rule.speed_m_s {
             body.slow_since_s = f64::INFINITY;
             continue;
-        };
-        if body.velocity_m_s != velocity_m_s {
-            (body.velocity_m_s, body.slow_since_s) = (velocity_m_s, f64::INFINITY);
+        }
+        if body.velocity_m_s != one.surface_m_s {
+            (body.velocity_m_s, body.slow_since_s) = (one.surface_m_s, f64::INFINITY);
         }
         body.slow_since_s = body.slow_since_s.min(state.time_s);
+        if state.time_s - body.slow_since_s >= rule.after_s {
+            slow.push(one.cluster);
+        }
     }
-    let may: Vec<bool> = sleep.of_cluster.iter().map(slow_for).collect();
+    if slow.is_empty() {
+        return 1;
+    }
+    let mut may = vec![false; all];
+    for cluster in slow {
+        may[cluster as usize] = true;
+    }
     let (falling, riders) = at_rest_together(state, may);
     if !falling.is_empty() {
         fall_asleep(state, &falling, riders);
@@ -123,7 +129,7 @@ fn fall_asleep(state: &mut State, falling: &[u32], riders: Vec<Rider>) {
         bodies: falling.len(),
     });
     if let Some(contacts) = &mut state.contacts {
-        contacts.search_all();
+        contacts.skin_left_m = -1.0;
     }
     count_sleepers(state);
     for wall in &mut state.walls {
@@ -212,11 +218,11 @@ fn take_back_work(walls: &mut [Wall], rider: &Rider, force_n: [f64; 3], half_s: 
     walls[rider.wall as usize].pending_j -= half_s * power_w;
 }
 
-/// Sleeping clusters near an awake particle, by the list of pairs, or near a wall or sleeping bodies
-/// that do not move as they do.
-pub(crate) fn disturbed(state: &mut State, skin_m: f64) -> Vec<u32> {
-    let mut near = riders_near(state, skin_m);
-    near.extend(near_moving(state));
+/// Sleeping clusters near a wall or sleeping bodies that do not move as they do, besides those of
+/// these particles, which are near an awake one.
+pub(crate) fn disturbed(state: &mut State, mut near: Vec<u32>, skin_m: f64) -> Vec<u32> {
+    near.extend(riders_near(state, skin_m));
+    near.extend(near_moving_walls(state));
     let Some(clusters) = &state.clusters else {
         return Vec::new();
     };
@@ -227,25 +233,16 @@ pub(crate) fn disturbed(state: &mut State, skin_m: f64) -> Vec<u32> {
     ids
 }
 
-/// Sleeping particles near an awake one, by the list of pairs, and those at rest near a moving wall.
-fn near_moving(state: &State) -> Vec<u32> {
+/// Sleeping particles near a moving wall that does not carry them.
+fn near_moving_walls(state: &State) -> Vec<u32> {
     let Some(contacts) = &state.contacts else {
         return Vec::new();
     };
     let p = &state.particles;
+    let mut near = Vec::new();
     if p.asleep.is_empty() {
-        return Vec::new();
+        return near;
     }
-    let near_particles =
-        contacts
-            .pairs
-            .iter()
-            .filter_map(|&[a, b]| match [a, b].map(|i| p.sleeps(i as usize)) {
-                [true, false] => Some(a),
-                [false, true] => Some(b),
-                _ => None,
-            });
-    let mut near: Vec<u32> = near_particles.collect();
     for (n, wall) in state.walls.iter().enumerate() {
         if moves(wall, state.moment()) {
             let is_near = nearness(wall, contacts.skin_m);
@@ -287,6 +284,10 @@ pub(crate) fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
         if body.asleep && wakes[find(&mut names, id) as usize] {
             *body = ClusterSleep::AWAKE;
             bodies += 1;
+            if let Some(contacts) = &mut state.contacts {
+                let references = &mut contacts.scratch.references;
+                references.due.extend(clusters.members(id));
+            }
         }
     }
     for clump in state.clumps.all.iter().filter(|clump| clump.rides()) {
@@ -475,11 +476,6 @@ pub(crate) fn count_sleepers(state: &mut State) {
         0 => 0,
         _ => (0..bonds.len()).filter(rests).count() as u64,
     };
-    let idle = Idle {
-        asleep: &p.asleep,
-        part_of: &state.rigid_parts.of_particle,
-    };
-    state.scratch.partitions = divide_busy(bonds, p.free, state.scratch.threads, idle);
     for clump in &mut state.clumps.all {
         clump.asleep = sleep.is_asleep(clump.cluster);
     }
@@ -495,6 +491,7 @@ pub(crate) fn count_sleepers(state: &mut State) {
     });
     state.ledger.set_asleep(free.chain(clumps));
     count_riders(state);
+    state.divide_bonds();
 }
 
 /// Updates the riders and the power of the walls that carry them.

@@ -41,9 +41,10 @@ pub(super) fn add_clumps(state: &mut State, coming: Vec<Clump>) -> Renumbering {
             .particle_resistance
             .resize(count, Wrench::default());
     }
+    let partitions = state.wanted_partitions();
     if let Some(contacts) = &mut state.contacts {
         contacts.lost_j.resize(count, [0.0; 2]);
-        contacts.divide(count, state.scratch.threads);
+        contacts.divide(count, partitions);
         lengthen_lists(contacts, &state.particles, &state.clumps, before);
     }
     Renumbering {

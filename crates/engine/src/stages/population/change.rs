@@ -378,14 +378,14 @@ fn count_anew(
     old_radii_m: &[f64],
     materials_of_new: &[Option<u8>],
 ) {
-    let threads = state.scratch.threads;
+    let partitions = state.wanted_partitions();
     let (poses, parts) = state.naming_particles();
     let by = NewNumbers {
         now,
         old_radii_m,
         poses,
         materials_of_new,
-        threads,
+        partitions,
     };
     for part in parts {
         part.renumber(&by);

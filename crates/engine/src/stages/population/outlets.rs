@@ -105,7 +105,7 @@ fn follow(watch: &mut OutletWatch, state: &State) {
         let smallest_m = sizes.fold(f64::INFINITY, f64::min);
         watch.left_m = (STEPS_AHEAD * moved_m).max(NEAR * smallest_m);
         watch.near.clear();
-        watch.known = 0;
+        watch.known = clusters.oldest();
     }
     let all = clusters.history.len() as u32;
     let is_near = |id: &u32| {

@@ -1,7 +1,7 @@
 //! Neighbour lists: particles near walls, pairs of particles, and the spheres of clumps that are in
 //! either.
 
-mod among_sleepers;
+mod beside_sleepers;
 mod moved;
 mod renumbered;
 
@@ -9,7 +9,7 @@ use dem_scene::WallMotion;
 
 pub(crate) use self::renumbered::{lengthen_lists, renumber_lists};
 
-use self::among_sleepers::list_among_sleepers;
+use self::beside_sleepers::wake_disturbed;
 use self::moved::{find_due, find_left, may_be_due, refer_clumps, refer_particles, use_up};
 use super::neighbours::{MOST_TASKS, find_pairs};
 use crate::stages::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
@@ -75,7 +75,7 @@ pub(crate) fn use_up_skin(state: &mut State) -> usize {
         let riding_m_s = use_up_approach(sleep, contacts.moved_m, state.time_step_s);
         state.fastest_m_s = state.fastest_m_s.max(riding_m_s);
     }
-    if let (Some(contacts), None) = (&mut state.contacts, &state.sleep) {
+    if let Some(contacts) = &mut state.contacts {
         let references = &mut contacts.scratch.references;
         use_up(&state.scratch.chunks_moved_m, &state.clumps, references);
     }
@@ -91,25 +91,41 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
         return 0;
     };
     if is_due {
-        contacts.search_all();
+        contacts.skin_left_m = -1.0;
     }
-    if state.sleep.is_some() {
-        if contacts.skin_left_m < 0.0 {
-            let searched = list_among_sleepers(state);
-            if let Some(mut contacts) = state.contacts.take() {
-                let near = &mut contacts.scratch.buffers.near;
-                list_near_spheres(state, &contacts.pairs, near);
-                state.contacts = Some(contacts);
-            }
-            return searched;
+    let mut searched = 0;
+    if state.sleep.is_some() && contacts.skin_left_m < 0.0 {
+        let (looked_at, is_changed) = wake_disturbed(state);
+        searched += looked_at;
+        if is_changed {
+            leave_out_sleepers(state);
         }
-        list_self_contacts(state);
-        return 0;
     }
-    let searched = search_for_moved(state);
+    searched += search_for_moved(state);
     list_self_contacts(state);
     list_near_moving_walls(state);
     searched
+}
+
+/// Takes sleeping particles out of the lists.
+fn leave_out_sleepers(state: &mut State) {
+    let Some(mut contacts) = state.contacts.take() else {
+        return;
+    };
+    let asleep = &state.particles.asleep;
+    let is_awake = |i: u32| !asleep.get(i as usize).is_some_and(|asleep| *asleep);
+    for wall in &mut state.walls {
+        wall.near.retain(|&i| is_awake(i));
+    }
+    let mut pairs = std::mem::take(&mut contacts.scratch.former_pairs);
+    pairs.clear();
+    let both_awake = |pair: &&[u32; 2]| pair.iter().all(|&i| is_awake(i));
+    pairs.extend(contacts.pairs.iter().filter(both_awake));
+    let mut near = std::mem::take(&mut contacts.scratch.buffers.near);
+    list_near_spheres(state, &pairs, &mut near);
+    contacts.scratch.buffers.near = near;
+    put_in_list(state, &mut contacts, pairs);
+    state.contacts = Some(contacts);
 }
 
 /// Searches for the neighbours of the particles that have moved too far. Returns their number.
@@ -119,15 +135,18 @@ fn search_for_moved(state: &mut State) -> usize {
     };
     let mut searched = 0;
     if may_be_due(state, &contacts) {
-        contacts.skin_left_m = 0.0;
+        if state.sleep.is_none() {
+            contacts.skin_left_m = 0.0;
+        }
         let mut buffers = std::mem::take(&mut contacts.scratch.buffers);
         if knows_all(state, &contacts.scratch.references) {
             find_due(state, &mut contacts.scratch.references, &mut buffers);
         } else {
             begin_anew(state, &mut contacts);
             everything(state, &mut buffers.due);
+            let p = &state.particles;
             buffers.seeks.clear();
-            buffers.seeks.resize(state.particles.len(), true);
+            buffers.seeks.extend((0..p.len()).map(|i| !p.sleeps(i)));
         }
         if !buffers.due.is_empty() {
             searched = search_for(state, &mut contacts, &mut buffers);
@@ -170,10 +189,15 @@ fn begin_anew(state: &mut State, contacts: &mut Contacts) {
     }
 }
 
+/// All that are awake.
 fn everything(state: &State, due: &mut Due) {
+    let p = &state.particles;
+    let clumps = state.clumps.all.iter().enumerate();
     due.clear();
-    due.particles.extend(0..state.particles.free as u32);
-    due.clumps.extend(0..state.clumps.all.len());
+    due.particles
+        .extend((0..p.free as u32).filter(|&i| !p.sleeps(i as usize)));
+    due.clumps
+        .extend(clumps.filter(|(_, clump)| !clump.asleep).map(|(n, _)| n));
 }
 
 /// Searches for the neighbours of what is due: moves its balls, and lists the pairs and walls that
@@ -198,6 +222,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
         clusters: of_particle,
         clusters_ever,
         seeks: some,
+        asleep: &state.particles.asleep,
         clumps: Some((&state.clumps, references)),
     };
     known.update(&searched);
@@ -275,7 +300,7 @@ fn add_reached(
     let is_reached = |[x, y, z, radius_m]: Ball| reaches([x, y, z], radius_m + wall.skin_left_m);
     let plane = plane_in_space(wall);
     let of_large = |large: &LargeCluster, found: &mut Vec<u32>| {
-        let any_seeks = searched.seeks.is_none() || large.seeks;
+        let any_seeks = !large.sleeps && (searched.seeks.is_none() || large.seeks);
         if !any_seeks || !is_reached(ball_around(&large.bounds)) {
             return;
         }
@@ -368,6 +393,7 @@ fn list_near_moving_walls(state: &mut State) {
             clusters,
             clusters_ever,
             seeks: None,
+            asleep: &state.particles.asleep,
             clumps: Some((&state.clumps, clumps)),
         };
         // Bodies may have been removed since the last search.

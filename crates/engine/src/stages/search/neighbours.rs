@@ -61,6 +61,7 @@ pub(super) fn find_pairs_of_all(
         clusters,
         clusters_ever: None,
         seeks: None,
+        asleep: &[],
         clumps: None,
     };
     known.update(&searched);
@@ -125,7 +126,7 @@ impl<'a> Search<'a> {
 
     /// Pairs of two large clusters.
     fn among_large(&self, buffers: &mut PairBuffers) {
-        let count = self.known.large.len();
+        let count = self.known.awake_large();
         let each = count.div_ceil(MOST_TASKS).max(1);
         let tasks = in_tasks(count.div_ceil(each), &mut buffers.of_tasks, |n, task| {
             task.found.clear();

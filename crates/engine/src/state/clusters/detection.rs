@@ -166,7 +166,14 @@ impl Clusters {
 
     /// Numbers of the intact clusters, in order.
     pub fn living(&self) -> impl Iterator<Item = u32> {
-        (0..self.history.len() as u32).filter(|id| self.history[*id as usize].ended_s.is_none())
+        let all = self.oldest()..self.history.len() as u32;
+        all.filter(|id| self.history[*id as usize].ended_s.is_none())
+    }
+
+    /// The smallest number of an intact cluster: in a process, most have ended long ago.
+    pub(crate) fn oldest(&self) -> u32 {
+        let all = self.of_particle.iter().copied();
+        all.min().unwrap_or(self.history.len() as u32)
     }
 
     /// Whether two particles belong to the same cluster.

@@ -1,7 +1,6 @@
 //! Vectors of the neighbour search, kept from one search to the next for their memory only.
 
 use super::balls::{Ball, BoxColumns};
-use super::clusters::KnownClusters;
 use super::grids::Grids;
 use dem_physics::geometry::Bounds;
 
@@ -40,27 +39,22 @@ pub(crate) struct SearchBuffers {
     pub(crate) pairs: PairBuffers,
     /// Of the list of spheres of clumps that are near something.
     pub(crate) near: NearBuffers,
-    /// Of a search where bodies may sleep.
+    /// Of a look for sleeping bodies beside awake ones.
     pub(crate) awake: AwakeBuffers,
 }
 
-/// Vectors of a search among what is awake and what sleeps beside it.
+/// Vectors of a look for what sleeps beside something awake.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct AwakeBuffers {
     /// Boxes around those that are awake: those that each task found, and all of them.
     pub(crate) box_tasks: Vec<Vec<Bounds>>,
     pub(crate) boxes: Vec<Bounds>,
-    /// The particles that may be in a pair: those that each task found, and all of them.
+    /// The particles at rest beside those: those that each task found, and all of them.
     pub(crate) tasks: Vec<AwakeTask>,
     pub(crate) particles: Vec<u32>,
-    /// The number of the cluster of each, and its ball.
-    pub(crate) clusters: Vec<u32>,
-    pub(crate) balls: Vec<Ball>,
-    /// Their clusters. Particles have their places in `particles` as numbers.
-    pub(crate) known: KnownClusters,
 }
 
-/// Vectors of a task that looks for what may be in a pair with something awake.
+/// Vectors of a task that looks for what is at rest beside something awake.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct AwakeTask {
     /// Numbers of the boxes that reach to the sleepers of its chunk.
@@ -110,8 +104,7 @@ impl AwakeBuffers {
         let of_boxes: usize = self.box_tasks.iter().map(|some| bytes_of(some)).sum();
         let of_task = |task: &AwakeTask| bytes_of(&task.boxes) + bytes_of(&task.particles);
         let of_tasks: usize = self.tasks.iter().map(of_task).sum();
-        let of_particles = bytes_of(&self.particles) + bytes_of(&self.clusters);
-        of_boxes + bytes_of(&self.boxes) + of_tasks + of_particles + bytes_of(&self.balls)
+        of_boxes + bytes_of(&self.boxes) + of_tasks + bytes_of(&self.particles)
     }
 }
 

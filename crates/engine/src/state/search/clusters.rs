@@ -25,6 +25,8 @@ pub(crate) struct Searched<'a> {
     pub(crate) clusters_ever: Option<usize>,
     /// For each particle whether it seeks. None: all seek.
     pub(crate) seeks: Option<&'a [bool]>,
+    /// For each particle whether it sleeps: those that do are not searched. Empty: none does.
+    pub(crate) asleep: &'a [bool],
     /// The clumps, and where they were at their last search.
     pub(crate) clumps: Option<(&'a Clumps, &'a [ClumpReference])>,
 }
@@ -34,6 +36,12 @@ impl Searched<'_> {
     #[inline(always)]
     pub(crate) fn is_seeking(&self, i: u32) -> bool {
         self.seeks.is_none_or(|seeks| seeks[i as usize])
+    }
+
+    /// Whether a cluster of these particles sleeps.
+    pub(crate) fn sleeps(&self, members: &[u32]) -> bool {
+        let sleeps = |&i: &u32| self.asleep.get(i as usize).is_some_and(|asleep| *asleep);
+        members.first().is_some_and(sleeps)
     }
 }
 
@@ -71,6 +79,8 @@ pub struct LargeCluster {
     pub(crate) rigid: Option<RigidBody>,
     /// Whether any of its balls seeks.
     pub(crate) seeks: bool,
+    /// Whether it sleeps: then it is not searched.
+    pub(crate) sleeps: bool,
     /// Whether its boxes are yet to be found.
     is_new: bool,
 }
@@ -91,8 +101,15 @@ impl KnownClusters {
         let groups = &self.groups;
         self.large.par_iter_mut().for_each(|large| {
             let members = groups.members(large.group);
-            large.seeks = members.iter().any(|&i| searched.is_seeking(i));
-            if large.seeks || large.is_new {
+            large.sleeps = searched.sleeps(members);
+            // The spheres of a clump seek together.
+            let some = if large.rigid.is_some() {
+                &members[..1]
+            } else {
+                members
+            };
+            large.seeks = !large.sleeps && some.iter().any(|&i| searched.is_seeking(i));
+            if large.seeks || large.is_new && !large.sleeps {
                 large.find_boxes(members, searched);
                 large.is_new = false;
             }
@@ -100,7 +117,7 @@ impl KnownClusters {
         self.sort_boxes();
     }
 
-    /// Sorts the large clusters by the lower ends of their boxes.
+    /// Sorts the large clusters that are awake by the lower ends of their boxes.
     fn sort_boxes(&mut self) {
         let Self {
             large,
@@ -109,8 +126,8 @@ impl KnownClusters {
             ..
         } = self;
         order.clear();
-        let low_end_m = |large: &LargeCluster| large.bounds.low[0];
-        order.extend(large.iter().map(low_end_m).zip(0..));
+        let awake = (0..).zip(&*large).filter(|(_, large)| !large.sleeps);
+        order.extend(awake.map(|(place, large)| (large.bounds.low[0], place)));
         order.sort_unstable_by(|(a_m, a), (b_m, b)| a_m.total_cmp(b_m).then(a.cmp(b)));
         let box_of = |&(_, place): &(f64, u32)| large[place as usize].bounds;
         let boxes = |some: &[(f64, u32)]| box_columns(some.iter().map(box_of));
@@ -118,7 +135,12 @@ impl KnownClusters {
         columns.extend(order.chunks(BOXES).map(boxes));
     }
 
-    /// The `n`th large cluster in the order of the lower ends of the boxes along x.
+    /// Number of the large clusters that are awake.
+    pub(crate) fn awake_large(&self) -> usize {
+        self.by_low_end_m.len()
+    }
+
+    /// The `n`th large cluster that is awake, in the order of the lower ends of the boxes along x.
     #[inline(always)]
     pub(crate) fn nth_along_x(&self, n: usize) -> &LargeCluster {
         &self.large[self.by_low_end_m[n].1 as usize]
@@ -215,6 +237,7 @@ impl LargeCluster {
             blocks: blocks.unwrap_or_default(),
             rigid,
             seeks: true,
+            sleeps: false,
             is_new: true,
         }
     }
@@ -289,21 +312,31 @@ impl LargeCluster {
 /// The particles of each cluster.
 #[derive(Debug, Clone, Default)]
 pub struct Groups {
+    /// The smallest number of a cluster. Those of bodies that have left a process are not looked
+    /// at again.
+    first: u32,
     /// Particles, sorted by cluster, then by number.
     members: Vec<u32>,
-    /// Start of each cluster in `members`, followed by the total number.
+    /// Start of each cluster from `first` on in `members`, followed by the total number.
     starts: Vec<u32>,
 }
 
 impl Groups {
     /// Sorts the particles anew. `clusters`: one for each particle.
     fn set(&mut self, clusters: &[u32]) {
-        let Self { members, starts } = self;
-        let count = clusters.iter().max().map_or(0, |&last| last as usize + 1);
+        let Self {
+            first,
+            members,
+            starts,
+        } = self;
+        *first = clusters.iter().copied().min().unwrap_or(0);
+        let last = clusters.iter().max();
+        let count = last.map_or(0, |&last| (last - *first) as usize + 1);
+        let place_of = |cluster: u32| (cluster - *first) as usize;
         starts.clear();
         starts.resize(count + 1, 0);
         for &cluster in clusters {
-            starts[cluster as usize] += 1;
+            starts[place_of(cluster)] += 1;
         }
         // The end of each, from which its start is reached when its particles have been placed.
         for cluster in 1..=count {
@@ -312,7 +345,7 @@ impl Groups {
         members.clear();
         members.resize(clusters.len(), 0);
         for i in (0..clusters.len()).rev() {
-            let place = &mut starts[clusters[i] as usize];
+            let place = &mut starts[place_of(clusters[i])];
             *place -= 1;
             members[*place as usize] = i as u32;
         }
@@ -320,12 +353,13 @@ impl Groups {
 
     /// All clusters, some of which may have no particle.
     pub(crate) fn all(&self) -> std::ops::Range<u32> {
-        0..self.starts.len().saturating_sub(1) as u32
+        self.first..self.first + self.starts.len().saturating_sub(1) as u32
     }
 
     /// The particles of a cluster, ascending.
     pub(crate) fn members(&self, cluster: u32) -> &[u32] {
-        let [start, end] = [0, 1].map(|k| self.starts[cluster as usize + k] as usize);
+        let at = (cluster - self.first) as usize;
+        let [start, end] = [0, 1].map(|k| self.starts[at + k] as usize);
         &self.members[start..end]
     }
 
@@ -363,6 +397,7 @@ mod tests {
             clusters: &clusters,
             clusters_ever: None,
             seeks: None,
+            asleep: &[],
             clumps: None,
         };
         let mut known = KnownClusters::default();
@@ -377,6 +412,7 @@ mod tests {
             clusters: &broken,
             clusters_ever: None,
             seeks,
+            asleep: &[],
             clumps: None,
         });
         known.update(&some);
@@ -398,6 +434,7 @@ mod tests {
             clusters,
             clusters_ever,
             seeks: None,
+            asleep: &[],
             clumps: None,
         };
         let (whole, broken) = ([0; 40], [[1; 20], [2; 20]].concat());

@@ -15,7 +15,8 @@ const CELLS_PER_BALL: usize = 4;
 /// their memory.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Grids {
-    levels: [Grid; MOST_LEVELS],
+    /// On the heap: contacts, which hold them, are often moved.
+    levels: Box<[Grid; MOST_LEVELS]>,
     largest_m: f64,
 }
 
@@ -44,14 +45,14 @@ impl Grids {
     /// above 0.
     pub(crate) fn fill(&mut self, active: &[(u32, Ball)]) {
         self.largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
-        for level in &mut self.levels {
+        for level in self.levels.iter_mut() {
             level.members.clear();
         }
         for (place, (_, ball)) in (0..).zip(active) {
             let level = self.level_of(ball[3]);
             self.levels[level].members.push(place);
         }
-        for level in &mut self.levels {
+        for level in self.levels.iter_mut() {
             level.fill(active);
         }
     }
@@ -74,7 +75,7 @@ impl Grids {
 
     /// The grids, of the largest balls first.
     pub(crate) fn levels(&self) -> &[Grid] {
-        &self.levels
+        &self.levels[..]
     }
 
     /// The number of the grid that holds balls of this radius, m.

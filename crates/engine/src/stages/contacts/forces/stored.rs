@@ -169,7 +169,7 @@ impl Renumbered for Contacts {
             .collect();
         remembered.sort_unstable_by_key(|(pair, _)| *pair);
         (self.pairs, self.histories) = remembered.into_iter().unzip();
-        self.divide(by.poses.len(), by.threads);
+        self.divide(by.poses.len(), by.partitions);
     }
 }
 

@@ -11,7 +11,7 @@ use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::Contacts;
 use crate::state::particles::{Particles, Pose};
 use crate::state::search::balls::Ball;
-use crate::state::search::buffers::SearchBuffers;
+use crate::state::search::buffers::{Due, SearchBuffers};
 use crate::state::search::clusters::is_large;
 use crate::state::search::references::References;
 use crate::state::search::rigid_balls::ClumpReference;
@@ -49,9 +49,12 @@ pub(super) fn may_be_due(state: &State, contacts: &Contacts) -> bool {
     let mut chunks = chunks.zip(&state.scratch.chunks_moved_m);
     let mut clumps = references.clumps.iter().zip(&state.clumps.all);
     contacts.skin_left_m < 0.0
+        || !references.due.is_empty()
         || references.balls.len() != state.particles.len()
         || chunks.any(|(left_m, moved_m)| *left_m < STEPS_LEFT * moved_m)
-        || clumps.any(|(reference, clump)| reference.left_m < STEPS_LEFT * clump.moved_m)
+        || clumps.any(|(reference, clump)| {
+            !clump.asleep && reference.left_m < STEPS_LEFT * clump.moved_m
+        })
 }
 
 /// Subtracts the displacements in a drift from the distances left.
@@ -64,27 +67,33 @@ pub(super) fn use_up(chunks_moved_m: &[f64], clumps: &Clumps, references: &mut R
     }
 }
 
-/// Finds what is due, if anything is urgent.
+/// Finds what is due: what is requested, and if anything else is urgent, all that soon would be.
 pub(super) fn find_due(
     state: &State,
     references: &mut References,
     SearchBuffers { due, seeks, .. }: &mut SearchBuffers,
 ) {
     due.clear();
-    if !is_urgent(state, references) {
+    let is_urgent = is_urgent(state, references);
+    if !is_urgent && references.due.is_empty() {
         return;
     }
     let p = &state.particles;
     let step_s = state.time_step_s;
     let is_due = |i: usize| {
+        if p.sleeps(i) {
+            return false;
+        }
         let [left_m, allowance_m] = free_left_m(p, references, i);
         left_m < least_m(SOON * allowance_m, p.motions[i].speed_m_s() * step_s)
     };
     seeks.clear();
     seeks.resize(p.len(), false);
-    let free = seeks[..p.free].par_iter_mut().with_min_len(CHUNK);
-    free.enumerate().for_each(|(i, seeks)| *seeks = is_due(i));
-    for &i in &references.due {
+    if is_urgent {
+        let free = seeks[..p.free].par_iter_mut().with_min_len(CHUNK);
+        free.enumerate().for_each(|(i, seeks)| *seeks = is_due(i));
+    }
+    for &i in references.due.iter().filter(|i| !p.sleeps(**i as usize)) {
         match state.clumps.carrier_of(i as usize) {
             Some(clump) => due.clumps.push(clump),
             None => seeks[i as usize] = true,
@@ -93,17 +102,8 @@ pub(super) fn find_due(
     let free = (0..).zip(&seeks[..p.free]);
     due.particles
         .extend(free.filter(|(_, seeks)| **seeks).map(|(i, _)| i));
-    for (n, (clump, reference)) in (state.clumps.all.iter())
-        .zip(&mut references.clumps)
-        .enumerate()
-    {
-        reference.left_m = clump_left_m(&state.clumps, clump, reference);
-        let (fraction, steps) = SOON_OF_CLUMP;
-        let [now_m, soon_m] = [NOW_OF_CLUMP, fraction].map(|part| part * reference.allowance_m);
-        let soon_m = soon_m.min(steps * clump.moved_m).max(now_m);
-        if reference.left_m < least_m(soon_m, clump.moved_m) {
-            due.clumps.push(n);
-        }
+    if is_urgent {
+        add_clumps_soon_due(state, references, due);
     }
     due.clumps.sort_unstable();
     due.clumps.dedup();
@@ -112,16 +112,30 @@ pub(super) fn find_due(
     }
 }
 
-/// Whether anything is due, among the chunks and clumps that have used up what was surely left.
-/// Of those that are not, it finds what is left.
+/// Adds the clumps that would soon be due.
+fn add_clumps_soon_due(state: &State, references: &mut References, due: &mut Due) {
+    let clumps = state.clumps.all.iter().zip(&mut references.clumps);
+    for (n, (clump, reference)) in clumps.enumerate().filter(|(_, (clump, _))| !clump.asleep) {
+        reference.left_m = clump_left_m(&state.clumps, clump, reference);
+        let (fraction, steps) = SOON_OF_CLUMP;
+        let [now_m, soon_m] = [NOW_OF_CLUMP, fraction].map(|part| part * reference.allowance_m);
+        let soon_m = soon_m.min(steps * clump.moved_m).max(now_m);
+        if reference.left_m < least_m(soon_m, clump.moved_m) {
+            due.clumps.push(n);
+        }
+    }
+}
+
+/// Whether anything is due that is not requested, among the chunks and clumps that have used up what
+/// was surely left. Of those that are not, it finds what is left.
 fn is_urgent(state: &State, references: &mut References) -> bool {
     let p = &state.particles;
-    let mut urgent = !references.due.is_empty();
+    let mut urgent = false;
     for chunk in 0..references.chunks_left_m.len() {
         let moved_m = state.scratch.chunks_moved_m.get(chunk).copied();
         if references.chunks_left_m[chunk] < STEPS_LEFT * moved_m.unwrap_or(0.0) {
             let mut least_left_m = f64::INFINITY;
-            for i in chunk_of(chunk, p.free) {
+            for i in chunk_of(chunk, p.free).filter(|&i| !p.sleeps(i)) {
                 let [left_m, _] = free_left_m(p, references, i);
                 least_left_m = least_left_m.min(left_m);
                 let moved_m = p.motions[i].speed_m_s() * state.time_step_s;
@@ -131,7 +145,7 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
         }
     }
     for (clump, reference) in state.clumps.all.iter().zip(&mut references.clumps) {
-        if reference.left_m < STEPS_LEFT * clump.moved_m {
+        if !clump.asleep && reference.left_m < STEPS_LEFT * clump.moved_m {
             reference.left_m = clump_left_m(&state.clumps, clump, reference);
             urgent |=
                 reference.left_m < least_m(NOW_OF_CLUMP * reference.allowance_m, clump.moved_m);
@@ -166,9 +180,10 @@ pub(super) fn find_left(particles: &Particles, references: &mut References) {
     references.chunks_left_m = chunks_left_m;
 }
 
-/// The least distance that the particles of a chunk may still move, m.
+/// The least distance that the awake particles of a chunk may still move, m.
 fn chunk_left_m(particles: &Particles, references: &References, chunk: usize) -> f64 {
-    let left = chunk_of(chunk, particles.free).map(|i| free_left_m(particles, references, i)[0]);
+    let awake = chunk_of(chunk, particles.free).filter(|&i| !particles.sleeps(i));
+    let left = awake.map(|i| free_left_m(particles, references, i)[0]);
     left.fold(f64::INFINITY, f64::min)
 }
 

@@ -60,7 +60,7 @@ pub(crate) fn renumber_lists(
     let references = &mut contacts.scratch.references;
     let knows_all =
         references.balls.len() == now.len() && references.clumps.len() == old_firsts.len();
-    if state.sleep.is_some() || !knows_all {
+    if !knows_all {
         contacts.search_all();
         state.contacts = Some(contacts);
         return;

@@ -17,7 +17,10 @@ pub(super) fn list_with_small(
         ..
     } = buffers;
     let groups = &known.groups;
-    let is_small = |&group: &u32| !groups.is_large(group) && !groups.members(group).is_empty();
+    let is_small = |&group: &u32| {
+        let members = groups.members(group);
+        !groups.is_large(group) && !members.is_empty() && !searched.sleeps(members)
+    };
     small.clear();
     small.extend(groups.all().filter(is_small));
     active.clear();
@@ -27,7 +30,7 @@ pub(super) fn list_with_small(
     let balls = searched.balls;
     let [all, seeking] = bounds_of(small, known, searched);
     let mut where_sought = seeking;
-    for large in &known.large {
+    for large in known.large.iter().filter(|large| !large.sleeps) {
         let of_small = if large.seeks { &all } else { &seeking };
         let common = large.bounds.common(of_small);
         if common == Bounds::EMPTY {

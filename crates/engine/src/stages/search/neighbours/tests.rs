@@ -40,6 +40,7 @@ proptest! {
             clusters: &clusters,
             clusters_ever: None,
             seeks: Some(seeks),
+            asleep: &[],
             clumps: None,
         };
         let (mut known, mut buffers) = (KnownClusters::default(), PairBuffers::default());
