@@ -49,7 +49,7 @@ use self::ledger::EnergyLedger;
 use self::loads::GroupLoad;
 use self::model::Model;
 use self::particles::{Particles, Pose, Wrench};
-use self::partitions::{Idle, divide_busy};
+use self::partitions::{Idle, count_busy, divide_busy};
 use self::population::Population;
 use self::renumbered::Renumbered;
 use self::rigid_parts::RigidParts;
@@ -243,14 +243,10 @@ impl State {
 
     /// Number of partitions that the work is worth now: bodies come, leave, fall asleep and wake.
     pub(crate) fn wanted_partitions(&self) -> usize {
+        let pairs = self.contacts.as_ref().map_or(0, |c| c.pairs.len());
+        let items = self.scratch.busy + self.clumps.near.len() + pairs;
         let threads = self.scratch.threads;
-        let [asleep, bonds_asleep] = match &self.sleep {
-            Some(sleep) => [sleep.particles, sleep.bonds as usize],
-            None => [0; 2],
-        };
-        let particles = self.particles.len().saturating_sub(asleep);
-        let bonds = self.bonds.len().saturating_sub(bonds_asleep);
-        match (particles + bonds).checked_div(self.scratch.worth_a_thread) {
+        match items.checked_div(self.scratch.worth_a_thread) {
             Some(more) => threads.min(1 + more),
             None => threads,
         }
@@ -258,8 +254,10 @@ impl State {
 
     /// Divides the work on particles and bonds again.
     pub(crate) fn divide_bonds(&mut self) {
-        let (free, threads) = (self.particles.free, self.wanted_partitions());
-        self.scratch.partitions = divide_busy(&self.bonds, free, threads, self.idle());
+        let free = self.particles.free;
+        self.scratch.busy = count_busy(&self.bonds, free, self.idle());
+        let wanted = self.wanted_partitions();
+        self.scratch.partitions = divide_busy(&self.bonds, free, wanted, self.idle());
     }
 
     /// What is not computed.

@@ -50,6 +50,7 @@ use crate::stages::walls::{
 use crate::stages::watching::{OUTPUT, watch};
 use crate::state::State;
 use crate::state::events::Events;
+use crate::threads::share_loops;
 
 /// A part of the step: its stage and its function, which returns the number of bonds, contacts,
 /// particles or bodies that the stage has worked on.
@@ -162,6 +163,7 @@ pub fn drift(state: &mut State) {
 /// Does the parts whose stages are not left out. `stages`: for each part the number of its stage.
 fn run(parts: &[Part], stages: &[usize], state: &mut State) {
     state.scratch.clock.start(state.steps);
+    share_loops(state.wanted_partitions() > 1);
     for ((_, part), &stage) in parts.iter().zip(stages) {
         if state.scratch.clock.is_left_out(stage) {
             continue;
@@ -175,6 +177,7 @@ fn run(parts: &[Part], stages: &[usize], state: &mut State) {
             None => clock.book(stage),
         }
     }
+    share_loops(true);
 }
 
 /// Checks are listed in the table, but run between steps.

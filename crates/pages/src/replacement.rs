@@ -13,7 +13,7 @@ const WAYS: [(&str, &str); 3] = [
     ("chute-region", "in a region around the plate"),
     ("chute", "from the first touch until no bond breaks"),
 ];
-const SEEDS: usize = 4;
+const SEEDS: usize = 8;
 
 /// The recorded data of a run.
 struct Run {

@@ -79,8 +79,8 @@ use self::zones::place_zones;
 use dem_engine::state::bodies::PlacedBody;
 use dem_results::summary::Inputs;
 
-/// Number of particles and bonds that justify a thread of their own.
-const WORTH_A_THREAD: usize = 5000;
+/// Number of particles, bonds and pairs that justify a thread of their own.
+const WORTH_A_THREAD: usize = 2000;
 
 /// A simulation that is ready to step, with names for its parts.
 #[derive(Debug, Clone)]

@@ -3,9 +3,8 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 pub use crate::state::sleep::mask::CHUNK;
+use crate::threads::for_each;
 
 /// The numbers of the chunks of `count` particles.
 pub(crate) fn chunks_of(count: usize) -> Range<usize> {
@@ -33,9 +32,9 @@ pub(crate) fn in_tasks<T: Default + Send>(
         buffers.resize_with(count, T::default);
     }
     let own = &mut buffers[..count];
-    own.par_iter_mut()
-        .enumerate()
-        .for_each(|(task, buffer)| work(task, buffer));
+    for_each(own.iter_mut().enumerate(), |(task, buffer)| {
+        work(task, buffer)
+    });
     own
 }
 
@@ -70,7 +69,7 @@ pub(crate) fn sums_of_chunks<const N: usize>(
     let chunks = count.div_ceil(CHUNK);
     let each = chunks.div_ceil(PARTS);
     let mut parts = [[0.0; N]; PARTS];
-    parts.par_iter_mut().enumerate().for_each(|(part, sums)| {
+    for_each(parts.iter_mut().enumerate(), |(part, sums)| {
         let own = part * each..chunks.min((part + 1) * each);
         *sums = own.map(of_chunk).fold([0.0; N], add);
     });

@@ -7,7 +7,6 @@ mod meeting;
 mod motion;
 
 use nalgebra::Vector3;
-use rayon::prelude::*;
 
 use self::joints::join_walls;
 use self::meeting::Place;
@@ -23,6 +22,7 @@ use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Wall, WallContact, WallLoad};
+use crate::threads;
 use dem_physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
 use dem_physics::contact::law::ContactKind;
 use dem_physics::geometry::{Frame, Touch};
@@ -218,7 +218,7 @@ fn for_each(meetings: &mut [Meetings], near: usize, work: impl Fn(&mut Meetings)
     if near < FEW {
         meetings.iter_mut().for_each(work);
     } else {
-        meetings.par_iter_mut().for_each(work);
+        threads::for_each(meetings.iter_mut(), work);
     }
 }
 

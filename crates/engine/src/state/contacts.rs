@@ -3,13 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::islands::Islands;
 use super::search::buffers::SearchBuffers;
 use super::search::references::References;
 use super::self_contacts::SelfContacts;
+use crate::threads::for_each;
 use dem_physics::contact::law::ContactKind;
 
 /// In [`ContactModel::kind_of`]: the scene does not define the pair of materials.
@@ -269,10 +269,12 @@ impl Contacts {
         histories.resize(pairs.len(), ContactHistory::default());
         let mut remembers = std::mem::take(&mut self.scratch.remembers);
         remembers.resize(pairs.len(), false);
-        let chunks = histories.par_chunks_mut(RELISTED_AT_ONCE);
-        let chunks = chunks.zip(remembers.par_chunks_mut(RELISTED_AT_ONCE));
-        let chunks = chunks.zip(pairs.par_chunks(RELISTED_AT_ONCE));
-        chunks.for_each(|((new, remember), pairs)| relist_chunk(new, remember, pairs));
+        let chunks = histories.chunks_mut(RELISTED_AT_ONCE);
+        let chunks = chunks.zip(remembers.chunks_mut(RELISTED_AT_ONCE));
+        let chunks = chunks.zip(pairs.chunks(RELISTED_AT_ONCE));
+        for_each(chunks, |((new, remember), pairs)| {
+            relist_chunk(new, remember, pairs)
+        });
         self.scratch.former_histories = std::mem::replace(&mut self.histories, histories);
         self.scratch.former_pairs = std::mem::replace(&mut self.pairs, pairs);
         self.set_partitions(particles, self.scratch.wanted_partitions.max(1), &remembers);

@@ -117,6 +117,13 @@ pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Partition> {
     divide_busy(bonds, particles, count, Idle::default())
 }
 
+/// Number of the particles and bonds that are not idle.
+pub(crate) fn count_busy(bonds: &Bonds, particles: usize, idle: Idle<'_>) -> usize {
+    let awake = (0..particles).filter(|&i| !idle.sleeps(i)).count();
+    let computed = (0..bonds.len()).filter(|&at| !idle.leaves_out(bonds, at));
+    awake + computed.count()
+}
+
 /// Divides the particles and bonds that are not idle.
 pub(crate) fn divide_busy(
     bonds: &Bonds,

@@ -18,8 +18,10 @@ use dem_physics::chebyshev::Chebyshev;
 pub struct Scratch {
     /// Largest number of partitions of the work.
     pub threads: usize,
-    /// Number of particles and bonds that are worth a thread of their own; 0: any number is.
+    /// Number of particles, bonds and pairs that are worth a thread of their own; 0: any number is.
     pub worth_a_thread: usize,
+    /// Number of free particles and bonds that are computed.
+    pub(crate) busy: usize,
     /// Division of particles and bonds among threads.
     pub partitions: Vec<Partition>,
     /// Coefficients of damping of bonds in this step, structural damping included: as

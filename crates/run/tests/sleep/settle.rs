@@ -48,6 +48,16 @@ fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
 }
 
 #[test]
+fn work_is_divided_as_long_as_it_is_there() {
+    let mut state = started(&format!("{}{SLEEP}", falling()));
+    (state.scratch.threads, state.scratch.worth_a_thread) = (2, 4);
+    state.divide();
+    assert_eq!(state.scratch.partitions.len(), 2);
+    go_until_asleep(&mut state, 3);
+    assert_eq!(state.scratch.partitions.len(), 1);
+}
+
+#[test]
 fn the_ground_still_feels_those_who_sleep() {
     let mut state = started(&format!("{}{SLEEP}", falling()));
     go_until_asleep(&mut state, 3);

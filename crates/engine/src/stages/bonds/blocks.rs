@@ -6,6 +6,7 @@ use std::ops::Range;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::Partition;
+use crate::threads::for_each;
 use dem_physics::lanes::{Lanes, MOST};
 use dem_physics::number::Vec3;
 
@@ -166,20 +167,12 @@ pub(super) fn coming_second_ends(bonds: &Bonds, block: usize) -> impl Iterator<I
 /// particles.
 pub(super) fn for_each_partition(
     partitions: &mut [Partition],
-    wrenches: &mut [Wrench],
+    mut wrenches: &mut [Wrench],
     work: &(impl Fn(&mut Partition, &mut [Wrench]) + Sync),
 ) {
-    match partitions {
-        [] => {}
-        [partition] => work(partition, wrenches),
-        _ => {
-            let (left, right) = partitions.split_at_mut(partitions.len() / 2);
-            let count = right[0].particles.start - left[0].particles.start;
-            let (of_left, of_right) = wrenches.split_at_mut(count);
-            rayon::join(
-                || for_each_partition(left, of_left, work),
-                || for_each_partition(right, of_right, work),
-            );
-        }
-    }
+    let parts = partitions.iter_mut().map(|partition| {
+        let own = wrenches.split_off_mut(..partition.particles.len());
+        (partition, own.unwrap_or_default())
+    });
+    for_each(parts, |(partition, wrenches)| work(partition, wrenches));
 }

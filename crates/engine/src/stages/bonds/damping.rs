@@ -62,8 +62,6 @@
 //! D_(n-1) that it goes by and P = dt u C u, a step takes at least 5/8 P_n - 1/8 P_(n-1) where G is
 //! at most 1/2.
 
-use rayon::prelude::*;
-
 use super::forces::any_bond;
 use super::viscous_kernel::damping_wrenches;
 use crate::stages::chunks::CHUNK;
@@ -75,6 +73,7 @@ use crate::stages::stage::{Need, Saving, Stage};
 use crate::state::State;
 use crate::state::bonds::BondRule;
 use crate::state::particles::{Motion, Wrench};
+use crate::threads::for_each;
 use dem_physics::chebyshev::Chebyshev;
 use dem_physics::remembered::{MOST, Remembered};
 
@@ -184,8 +183,8 @@ fn remember(state: &mut State, memory: f64) {
         return;
     }
     let (last, asleep) = (&state.bond_resistance, &state.particles.asleep);
-    let chunks = state.mean_resistance.par_chunks_mut(CHUNK).enumerate();
-    chunks.for_each(|(chunk, means)| {
+    let chunks = state.mean_resistance.chunks_mut(CHUNK).enumerate();
+    for_each(chunks, |(chunk, means)| {
         for_each_awake(chunk * CHUNK, means, asleep, |i, mean| {
             *mean = sum(mean, memory, [(1.0 - memory, &last[..])], i);
         });
@@ -201,8 +200,8 @@ fn damp_as_remembered(state: &mut State, factors: &Remembered) {
     let lists: [&[Wrench]; 3] = [&last, &second, &third];
     let others = [0, 1, 2].map(|k| (factors.damping[k], lists[k]));
     let asleep = &state.particles.asleep;
-    let chunks = expected.par_chunks_mut(CHUNK).enumerate();
-    chunks.for_each(|(chunk, expected)| {
+    let chunks = expected.chunks_mut(CHUNK).enumerate();
+    for_each(chunks, |(chunk, expected)| {
         for_each_awake(chunk * CHUNK, expected, asleep, |i, expected| {
             *expected = sum(expected, 0.0, others, i);
         });
@@ -211,8 +210,8 @@ fn damp_as_remembered(state: &mut State, factors: &Remembered) {
     state.scratch.damping_stages[0] = expected;
     let earlier = &memory.motions;
     let (predicted, asleep) = (&mut state.scratch.predicted[0], &state.particles.asleep);
-    let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
-    chunks.for_each(|(chunk, predicted)| {
+    let chunks = predicted.chunks_mut(CHUNK).enumerate();
+    for_each(chunks, |(chunk, predicted)| {
         for_each_awake(chunk * CHUNK, predicted, asleep, |i, motion| {
             for k in 0..3 {
                 let mut velocity_m_s = factors.present * motion.velocity_m_s[k];
@@ -280,8 +279,8 @@ fn damp_in_stages(state: &mut State, largest: f64) {
                 (stage.first_force, &first),
             ];
             let asleep = &state.particles.asleep;
-            let chunks = force.par_chunks_mut(CHUNK).enumerate();
-            chunks.for_each(|(chunk, force)| {
+            let chunks = force.chunks_mut(CHUNK).enumerate();
+            for_each(chunks, |(chunk, force)| {
                 for_each_awake(chunk * CHUNK, force, asleep, |i, force| {
                     *force = sum(force, stage.force, others, i);
                 });
@@ -346,8 +345,8 @@ fn predict(state: &mut State, of_bonds: &[Wrench]) {
     let resisting = [of_bonds, &state.scratch.particle_resistance];
     let forces = Forces::of(p, resisting, state.model.gravity_m_s2, half_s);
     predicted.resize(p.free, Motion::default());
-    let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
-    chunks.for_each(|(chunk, predicted)| {
+    let chunks = predicted.chunks_mut(CHUNK).enumerate();
+    for_each(chunks, |(chunk, predicted)| {
         for_each_awake(chunk * CHUNK, predicted, &p.asleep, |i, motion| {
             *motion = p.motions[i];
             forces.kick(i, motion);
@@ -369,10 +368,8 @@ fn go_on<const N: usize>(
     let [start, mut next] = std::mem::take(&mut state.scratch.predicted);
     next.resize(start.len(), Motion::default());
     let asleep = &state.particles.asleep;
-    let chunks = impulses
-        .par_chunks_mut(CHUNK)
-        .zip(next.par_chunks_mut(CHUNK));
-    chunks.enumerate().for_each(|(chunk, (impulses, next))| {
+    let chunks = impulses.chunks_mut(CHUNK).zip(next.chunks_mut(CHUNK));
+    for_each(chunks.enumerate(), |(chunk, (impulses, next))| {
         let first = chunk * CHUNK;
         for_each_awake(first, next, asleep, |i, motion| {
             let impulse = &mut impulses[i - first];

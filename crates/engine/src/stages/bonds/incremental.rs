@@ -1,14 +1,15 @@
 //! Forces of bonds of the incremental formulation.
 
 use nalgebra::Vector3;
-use rayon::prelude::*;
 
 use super::forces::any_bond;
 use crate::stages::bonds::one_by_one::add_single_wrenches;
+use crate::stages::chunks::CHUNK;
 use crate::stages::stage::{Need, Saving, Stage};
 use crate::state::State;
 use crate::state::bonds::{BondLaw, Bonds};
 use crate::state::particles::Particles;
+use crate::threads::for_each;
 use dem_physics::bond::incremental::{Step, advance};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
@@ -58,14 +59,13 @@ pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_s
     let (poses, motions) = (&particles.poses, &particles.motions);
     let mut sums = std::mem::take(&mut bonds.histories.sums);
     let known = &*bonds;
-    sums.par_iter_mut()
-        .with_min_len(1024)
-        .enumerate()
-        .for_each(|(at, history)| {
+    let chunks = sums.chunks_mut(CHUNK).enumerate();
+    for_each(chunks, |(chunk, sums)| {
+        for (at, history) in (chunk * CHUNK..).zip(sums) {
             let [a, b] = known.ends[at].map(|end| end as usize);
             let rests = known.is_broken(at) || particles.sleeps(a);
             if rests || known.rules[known.rule_of(at)].law != BondLaw::Incremental {
-                return;
+                continue;
             }
             let after = poses[b].place() - poses[a].place();
             let velocity = |end: usize| Vector3::from(motions[end].velocity_m_s);
@@ -75,6 +75,7 @@ pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_s
                 turns: [a, b].map(|end| time_step_s * Vector3::from(motions[end].spin_rad_s)),
             };
             *history = advance(&known.stiffness(at), history, &step);
-        });
+        }
+    });
     bonds.histories.sums = sums;
 }

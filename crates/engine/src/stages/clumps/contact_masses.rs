@@ -16,6 +16,7 @@
 //! each other, as of two plates that press, accelerate nothing: there it is at least their mean,
 //! T/6, so that no mode is damped by more than sqrt(6) zeta.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
@@ -28,6 +29,7 @@ use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::meetings::Meetings;
 use crate::state::particles::{Motion, Particles, Pose};
 use crate::state::walls::Wall;
+use crate::threads::for_each;
 use dem_physics::contact::law::ContactKind;
 use dem_physics::contact::relaxation::relaxed;
 use dem_physics::rotation::rotation;
@@ -73,7 +75,9 @@ pub(crate) fn share_masses(state: &mut State) -> usize {
         touches,
         first: free,
     };
-    part.set_masses(&state.clumps, &p.poses);
+    for_each(part.divided(), |part| {
+        part.set_masses(&state.clumps, &p.poses)
+    });
     0
 }
 
@@ -88,22 +92,16 @@ struct Seen<'a> {
 impl Seen<'_> {
     /// Adds the pairs of these partitions to `touches`, those of the spheres of clumps among their
     /// particles. In an order that does not depend on the partitions.
-    fn add_pairs(&self, partitions: &[ContactPartition], touches: &mut [ClumpTouch]) {
-        let [left, right] = match partitions {
-            [] => return,
-            [partition] => return self.add_partition(partition, touches),
-            _ => {
-                let (left, right) = partitions.split_at(partitions.len() / 2);
-                [left, right]
-            }
-        };
+    fn add_pairs(&self, partitions: &[ContactPartition], mut touches: &mut [ClumpTouch]) {
         let free = self.particles.free;
-        let start = |of: &[ContactPartition]| of[0].particles.start.max(free);
-        let (of_left, of_right) = touches.split_at_mut(start(right) - start(left));
-        rayon::join(
-            || self.add_pairs(left, of_left),
-            || self.add_pairs(right, of_right),
-        );
+        let parts = partitions.iter().map(|partition| {
+            let Range { start, end } = partition.particles.clone();
+            let own = touches.split_off_mut(..end.max(free) - start.max(free));
+            (partition, own.unwrap_or_default())
+        });
+        for_each(parts, |(partition, touches)| {
+            self.add_partition(partition, touches)
+        });
     }
 
     fn add_partition(&self, partition: &ContactPartition, touches: &mut [ClumpTouch]) {
@@ -211,31 +209,28 @@ struct Part<'a> {
     first: usize,
 }
 
-impl Part<'_> {
-    fn set_masses(self, all: &Clumps, poses: &[Pose]) {
-        if self.clumps.len() > CHUNK {
-            let (clumps, others) = self.clumps.split_at(self.clumps.len() / 2);
-            let first = others[0].first as usize;
-            let (motions, of_others) = self.motions.split_at_mut(first - self.first);
-            let (touches, touch_others) = self.touches.split_at_mut(first - self.first);
-            let one = Part {
+impl<'a> Part<'a> {
+    /// Divided into parts of as many clumps as a task handles.
+    fn divided(self) -> impl Iterator<Item = Self> {
+        let (mut first, end) = (self.first, self.first + self.touches.len());
+        let (mut motions, mut touches) = (self.motions, self.touches);
+        let mut chunks = self.clumps.chunks(CHUNK).peekable();
+        std::iter::from_fn(move || {
+            let clumps = chunks.next()?;
+            let next = chunks.peek().map_or(end, |next| next[0].first as usize);
+            let count = next - first;
+            let part = Self {
                 clumps,
-                motions,
-                touches,
-                first: self.first,
-            };
-            let other = Part {
-                clumps: others,
-                motions: of_others,
-                touches: touch_others,
+                motions: motions.split_off_mut(..count)?,
+                touches: touches.split_off_mut(..count)?,
                 first,
             };
-            rayon::join(
-                || one.set_masses(all, poses),
-                || other.set_masses(all, poses),
-            );
-            return;
-        }
+            first = next;
+            Some(part)
+        })
+    }
+
+    fn set_masses(self, all: &Clumps, poses: &[Pose]) {
         let awake = self.clumps.iter().filter(|clump| !clump.asleep);
         for clump in awake {
             let template = all.template(clump);

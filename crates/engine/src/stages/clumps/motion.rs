@@ -2,7 +2,6 @@
 //! with them.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use rayon::prelude::*;
 
 use crate::stages::clusters::bytes::{ClusterUser, clusters_bytes};
 use crate::stages::stage::{Need, Stage};
@@ -11,6 +10,7 @@ use crate::state::clumps::Template;
 use crate::state::clumps::{Clump, Clumps};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::search::buffers::NearBuffers;
+use crate::threads::{for_each, largest_of};
 use dem_physics::rigid::rotation_vector;
 use dem_physics::rotation;
 use dem_physics::rotation::numbers;
@@ -215,40 +215,26 @@ impl<'a> Part<'a> {
         }
     }
 
-    fn halves(self) -> [Self; 2] {
-        let (clumps, others) = self.clumps.split_at_mut(self.clumps.len() / 2);
-        let first = others[0].first as usize;
-        let at = first - self.first;
-        let (poses, other_poses) = self.poses.split_at_mut(at);
-        let (motions, other_motions) = self.motions.split_at_mut(at);
-        let (wrenches, other_wrenches) = self.wrenches.split_at_mut(at);
-        [
-            Self {
+    /// Divided into parts of as many clumps as a task handles.
+    fn divided(self) -> impl Iterator<Item = Self> {
+        let (mut first, end) = (self.first, self.first + self.poses.len());
+        let (mut poses, mut motions, mut wrenches) = (self.poses, self.motions, self.wrenches);
+        let mut chunks = self.clumps.chunks_mut(CHUNK).peekable();
+        std::iter::from_fn(move || {
+            let clumps = chunks.next()?;
+            let next = chunks.peek().map_or(end, |next| next[0].first as usize);
+            let count = next - first;
+            let part = Self {
                 clumps,
-                poses,
-                motions,
-                wrenches,
-                first: self.first,
-            },
-            Self {
-                clumps: others,
-                poses: other_poses,
-                motions: other_motions,
-                wrenches: other_wrenches,
+                poses: poses.split_off_mut(..count)?,
+                motions: motions.split_off_mut(..count)?,
+                wrenches: wrenches.split_off_mut(..count)?,
                 first,
-            },
-        ]
+            };
+            first = next;
+            Some(part)
+        })
     }
-}
-
-/// Does some work on all clumps, on as many threads as there are. Returns the largest result.
-fn in_parts(part: Part<'_>, work: &(impl Fn(Part<'_>) -> f64 + Sync)) -> f64 {
-    if part.clumps.len() <= CHUNK {
-        return work(part);
-    }
-    let [one, other] = part.halves();
-    let (one, other) = rayon::join(|| in_parts(one, work), || in_parts(other, work));
-    one.max(other)
 }
 
 /// Sums the forces on the spheres of each clump, and the energy that they take from its motion in a
@@ -260,7 +246,7 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
         near,
         ..
     } = clumps;
-    in_parts(Part::of(all, particles), &|part| {
+    for_each(Part::of(all, particles).divided(), |part| {
         for clump in part.clumps.iter_mut().filter(|clump| !clump.asleep) {
             let centre = Vector3::from(clump.place_m);
             let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
@@ -292,7 +278,6 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
             clump.force_n = force.into();
             clump.torque_n_m = torque.into();
         }
-        0.0
     });
 }
 
@@ -300,7 +285,7 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
 /// time `kick_s`.
 pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     let Clumps { templates, all, .. } = clumps;
-    all.par_chunks_mut(CHUNK).for_each(|some| {
+    for_each(all.chunks_mut(CHUNK), |some| {
         for clump in some.iter_mut().filter(|clump| !clump.asleep) {
             let template = &templates[clump.template as usize];
             kick_one(clump, template, gravity_m_s2, kick_s);
@@ -331,7 +316,7 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
         near,
         ..
     } = clumps;
-    in_parts(Part::of(all, particles), &|part| {
+    largest_of(Part::of(all, particles).divided(), |part| {
         let mut fastest = 0.0_f64;
         for clump in part.clumps.iter_mut().filter(|clump| !clump.asleep) {
             let template = &templates[clump.template as usize];

@@ -3,14 +3,13 @@
 //! Velocities are those halfway between two steps (leapfrog). This is kick-drift-kick with the
 //! second kick of a step merged with the first of the next.
 
-use rayon::prelude::*;
-
 use crate::stages::chunks::{CHUNK, ordered_sum};
 use crate::stages::clumps::motion::awake;
 use crate::stages::stage::{Need, Stage};
 use crate::state::State;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::sleep::mask::Asleep;
+use crate::threads::{for_each, largest_of};
 use dem_physics::lanes::{LaneWork, Lanes, with_lanes};
 use dem_physics::rigid::{room_to_small, turn, turn_a_little};
 
@@ -44,7 +43,8 @@ pub(crate) fn kick_particles(state: &mut State) -> usize {
     let mut motions = std::mem::take(&mut state.particles.motions);
     let p = &state.particles;
     let forces = Forces::of(p, state.resistances(), state.model.gravity_m_s2, kick_s);
-    (motions[..p.free].par_chunks_mut(CHUNK).enumerate()).for_each(|(chunk, motions)| {
+    let chunks = motions[..p.free].chunks_mut(CHUNK).enumerate();
+    for_each(chunks, |(chunk, motions)| {
         for_each_awake(chunk * CHUNK, motions, &p.asleep, |i, motion| {
             forces.kick(i, motion)
         });
@@ -149,29 +149,26 @@ pub fn drift(particles: &mut Particles, time_step_s: f64, chunks_moved_m: &mut V
         asleep,
         ..
     } = particles;
-    poses[..particles.free]
-        .par_chunks_mut(CHUNK)
-        .zip(chunks_moved_m)
-        .enumerate()
-        .map(|(chunk, (poses, moved_m))| {
-            let own = chunk * CHUNK..chunk * CHUNK + poses.len();
-            if asleep.is_whole(chunk) {
-                *moved_m = 0.0;
-                return 0.0;
-            }
-            let mut fastest = 0.0;
-            with_lanes(DriftWork {
-                poses,
-                motions: &motions[own.clone()],
-                asleep: asleep.get(own).unwrap_or_default(),
-                time_step_s,
-                fastest: &mut fastest,
-            });
-            let fastest = fastest.sqrt();
-            *moved_m = fastest * time_step_s;
-            fastest
-        })
-        .reduce(|| 0.0, f64::max)
+    let chunks = poses[..particles.free].chunks_mut(CHUNK);
+    let chunks = chunks.zip(chunks_moved_m).enumerate();
+    largest_of(chunks, |(chunk, (poses, moved_m))| {
+        let own = chunk * CHUNK..chunk * CHUNK + poses.len();
+        if asleep.is_whole(chunk) {
+            *moved_m = 0.0;
+            return 0.0;
+        }
+        let mut fastest = 0.0;
+        with_lanes(DriftWork {
+            poses,
+            motions: &motions[own.clone()],
+            asleep: asleep.get(own).unwrap_or_default(),
+            time_step_s,
+            fastest: &mut fastest,
+        });
+        let fastest = fastest.sqrt();
+        *moved_m = fastest * time_step_s;
+        fastest
+    })
 }
 
 /// The drift of some particles.

@@ -16,6 +16,7 @@ use crate::stages::stage::{Need, Saving, Stage};
 use crate::state::State;
 use crate::state::clusters::Clusters;
 use crate::state::particles::{Particles, Wrench};
+use crate::threads::for_each;
 
 /// ns per particle of a body of 25,547 particles: see doc/leave-out.md.
 const PARTICLE_DAMPING_NS: f64 = 37.6;
@@ -239,21 +240,19 @@ pub fn add_particle_damping(
     gamma: f64,
     resisting: &mut [Wrench],
 ) {
-    resisting[..particles.free]
-        .par_chunks_mut(CHUNK)
-        .enumerate()
-        .for_each(|(chunk, resisting)| {
-            for (i, resisting) in (chunk * CHUNK..).zip(resisting) {
-                let (wrench, motion) = (&particles.wrenches[i], &particles.motions[i]);
-                let weight = gravity_m_s2.map(|g| g / motion.inverse_mass);
-                for (k, weight) in weight.iter().enumerate() {
-                    let force = wrench.force_n[k] + weight;
-                    resisting.force_n[k] -= gamma * against(force, motion.velocity_m_s[k]);
-                    resisting.torque_n_m[k] -=
-                        gamma * against(wrench.torque_n_m[k], motion.spin_rad_s[k]);
-                }
+    let chunks = resisting[..particles.free].chunks_mut(CHUNK);
+    for_each(chunks.enumerate(), |(chunk, resisting)| {
+        for (i, resisting) in (chunk * CHUNK..).zip(resisting) {
+            let (wrench, motion) = (&particles.wrenches[i], &particles.motions[i]);
+            let weight = gravity_m_s2.map(|g| g / motion.inverse_mass);
+            for (k, weight) in weight.iter().enumerate() {
+                let force = wrench.force_n[k] + weight;
+                resisting.force_n[k] -= gamma * against(force, motion.velocity_m_s[k]);
+                resisting.torque_n_m[k] -=
+                    gamma * against(wrench.torque_n_m[k], motion.spin_rad_s[k]);
             }
-        });
+        }
+    });
 }
 
 /// The magnitude of a force with the sign of a velocity; 0 at rest.

@@ -206,9 +206,8 @@ pub(crate) fn list_riders_beside(state: &mut State, awake: &[Bounds]) -> Vec<u32
     let Some(sleep) = with_riders(state) else {
         return Vec::new();
     };
-    let all = awake.iter().fold(Bounds::EMPTY, |all, part| all.with(part));
-    let beside =
-        |bounds: &Bounds| all.overlaps(bounds) && awake.iter().any(|part| part.overlaps(bounds));
+    let awake = AlongX::of(awake);
+    let beside = |bounds: &Bounds| awake.near(bounds, 0.0).any(|part| part.overlaps(bounds));
     let riders = sleep
         .riders
         .iter()
@@ -348,7 +347,7 @@ pub(crate) fn look_ahead(state: &mut State, awake: &[Bounds], skin_m: f64) {
     let Some(sleep) = with_riders(state) else {
         return;
     };
-    let all_awake = awake.iter().fold(Bounds::EMPTY, |all, part| all.with(part));
+    let awake = AlongX::of(awake);
     let (mut after_s, mut left_m) = (f64::INFINITY, f64::INFINITY);
     for rider in &sleep.riders {
         let bounds = bounds_of(state, rider);
@@ -365,10 +364,8 @@ pub(crate) fn look_ahead(state: &mut State, awake: &[Bounds], skin_m: f64) {
                 _ => left_m = left_m.min(wall_gap_m(wall, &bounds).max(skin_m)),
             }
         }
-        if all_awake != Bounds::EMPTY && all_awake.gap_m(&bounds) + skin_m < left_m {
-            let gaps_m = awake.iter().map(|part| part.gap_m(&bounds) + skin_m);
-            left_m = gaps_m.fold(left_m, f64::min);
-        }
+        let gaps_m = awake.near(&bounds, left_m).map(|part| part.gap_m(&bounds));
+        left_m = gaps_m.fold(left_m, |least_m, gap_m| least_m.min(gap_m + skin_m));
     }
     let groups = groups(state, sleep);
     for (n, one) in groups.iter().enumerate() {
@@ -379,6 +376,33 @@ pub(crate) fn look_ahead(state: &mut State, awake: &[Bounds], skin_m: f64) {
     let now_s = state.time_s;
     if let Some(sleep) = &mut state.sleep {
         (sleep.due_s, sleep.left_m) = (now_s + after_s, left_m);
+    }
+}
+
+/// Boxes in the order of their lower ends along x.
+struct AlongX {
+    boxes: Vec<Bounds>,
+    /// Length of the longest along x, m.
+    longest_m: f64,
+}
+
+impl AlongX {
+    fn of(boxes: &[Bounds]) -> Self {
+        let mut boxes = boxes.to_vec();
+        boxes.sort_unstable_by(|a, b| a.low[0].total_cmp(&b.low[0]));
+        let lengths_m = boxes.iter().map(|part| part.high[0] - part.low[0]);
+        let longest_m = lengths_m.fold(0.0, f64::max);
+        Self { boxes, longest_m }
+    }
+
+    /// Those that may be nearer to a box than a distance, m.
+    fn near(&self, bounds: &Bounds, within_m: f64) -> impl Iterator<Item = &Bounds> {
+        let from_m = bounds.low[0] - within_m - self.longest_m;
+        let first = self.boxes.partition_point(|part| part.low[0] < from_m);
+        let to_m = bounds.high[0] + within_m;
+        self.boxes[first..]
+            .iter()
+            .take_while(move |part| part.low[0] <= to_m)
     }
 }
 

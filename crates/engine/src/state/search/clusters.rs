@@ -3,15 +3,16 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::balls::{BLOCK, BOXES, Ball, Blocks, BoxColumns, around, box_columns};
 use super::rigid_balls::{ClumpReference, Placement, RigidBalls, RigidBody};
 use crate::state::clumps::Clumps;
+use crate::threads::for_each;
 use dem_physics::geometry::Bounds;
 
 /// Clusters with fewer particles are small.
 const SMALL: usize = 16;
+/// Large clusters whose boxes a task updates.
+const UPDATED_AT_ONCE: usize = 8;
 
 /// What is searched.
 #[derive(Clone, Copy)]
@@ -99,7 +100,7 @@ impl KnownClusters {
             self.group_again(searched);
         }
         let groups = &self.groups;
-        self.large.par_iter_mut().for_each(|large| {
+        let update = |large: &mut LargeCluster| {
             let members = groups.members(large.group);
             large.sleeps = searched.sleeps(members);
             // The spheres of a clump seek together.
@@ -113,6 +114,9 @@ impl KnownClusters {
                 large.find_boxes(members, searched);
                 large.is_new = false;
             }
+        };
+        for_each(self.large.chunks_mut(UPDATED_AT_ONCE), |some| {
+            some.iter_mut().for_each(update);
         });
         self.sort_boxes();
     }

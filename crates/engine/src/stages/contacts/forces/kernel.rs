@@ -5,6 +5,7 @@ use super::input::StepInput;
 use crate::stages::bonds::blocks::fetch_soon_of;
 use crate::state::contacts::{ContactHistory, ContactPartition};
 use crate::state::particles::Wrench;
+use crate::threads;
 use dem_physics::contact::NormalLaw;
 use dem_physics::contact::law::{ContactWork, Rolling};
 use dem_physics::contact::rolling::RollingFriction;
@@ -18,50 +19,37 @@ pub(super) struct PartitionOutput<'a> {
 }
 
 impl<'a> PartitionOutput<'a> {
-    fn split(self, contacts: usize, particles: usize) -> [Self; 2] {
-        let (histories, other_histories) = self.histories.split_at_mut(contacts);
-        let (wrenches, other_wrenches) = self.wrenches.split_at_mut(particles);
-        let (lost_j, other_lost_j) = self.lost_j.split_at_mut(particles);
-        [
-            Self {
-                histories,
-                wrenches,
-                lost_j,
-            },
-            Self {
-                histories: other_histories,
-                wrenches: other_wrenches,
-                lost_j: other_lost_j,
-            },
-        ]
+    /// Takes away what belongs to the first of these contacts and particles.
+    fn take(&mut self, contacts: usize, particles: usize) -> Self {
+        Self {
+            histories: first_of(&mut self.histories, contacts),
+            wrenches: first_of(&mut self.wrenches, particles),
+            lost_j: first_of(&mut self.lost_j, particles),
+        }
     }
+}
+
+fn first_of<'a, T>(all: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    all.split_off_mut(..count).unwrap_or_default()
 }
 
 /// Works on all partitions, on as many threads as there are.
 pub(super) fn for_each(
     partitions: &mut [ContactPartition],
-    books: PartitionOutput<'_>,
+    mut books: PartitionOutput<'_>,
     scene: &StepInput<'_>,
 ) {
-    match partitions {
-        [] => {}
-        [partition] => with_most_lanes(PartitionWork {
+    let parts = partitions.iter_mut().map(|partition| {
+        let books = books.take(partition.own.len(), partition.particles.len());
+        (partition, books)
+    });
+    threads::for_each(parts, |(partition, books)| {
+        with_most_lanes(PartitionWork {
             partition,
             books,
             scene,
-        }),
-        _ => {
-            let (left, right) = partitions.split_at_mut(partitions.len() / 2);
-            let [of_left, of_right] = books.split(
-                right[0].own.start - left[0].own.start,
-                right[0].particles.start - left[0].particles.start,
-            );
-            rayon::join(
-                || for_each(left, of_left, scene),
-                || for_each(right, of_right, scene),
-            );
-        }
-    }
+        });
+    });
 }
 
 struct PartitionWork<'a> {
