@@ -15,6 +15,7 @@ pub mod one_surface;
 pub mod plane;
 pub mod region;
 pub mod solid_box;
+pub mod spatial_order;
 mod touch;
 
 pub use dem_io::Bounds;

@@ -8,4 +8,5 @@ pub mod inertia;
 pub mod landing;
 pub mod outer_layer;
 pub mod packing_fit;
+pub mod sieve;
 pub mod union;

@@ -17,9 +17,9 @@ use super::bonds::place_bonds;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::bonds::Bonds;
 use dem_engine::state::particles::{Particles, Pose};
-use dem_engine::state::search::spatial_order::spatial_order;
 use dem_engine::state::stored_bonds::{restore, turn_particles};
 use dem_physics::bond::scatter::body_key;
+use dem_physics::geometry::spatial_order::spatial_order;
 use dem_physics::shape::inertia::of_union;
 
 /// Largest rounding error of a coordinate as a fraction of a radius: with it, a strain of a

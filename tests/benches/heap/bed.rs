@@ -14,7 +14,7 @@ use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::Clusters;
 use dem_run::state::contacts::{ContactModel, Contacts};
 use dem_run::state::particles::Particles;
-use dem_run::state::search::spatial_order::spatial_order;
+use dem_run::physics::geometry::spatial_order::spatial_order;
 use dem_testing::Random;
 
 /// Number of cubes of a face-centred lattice along each side: with four sites each, of which some

@@ -6,7 +6,6 @@
 
 mod detection;
 pub mod fragments;
-mod sieve;
 pub mod sizes;
 
 pub use detection::{Cluster, Clusters, Split};

@@ -6,4 +6,3 @@ pub mod clusters;
 pub(crate) mod grids;
 pub mod references;
 pub mod rigid_balls;
-pub mod spatial_order;

@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::detection::Clusters;
-use super::sieve::{Ball, smallest_opening_m};
 use crate::state::clumps::Clumps;
 use crate::state::particles::Particles;
 use dem_physics::rotation::rotation;
 use dem_physics::shape::inertia::of_spheres;
+use dem_physics::shape::sieve::{Ball, smallest_opening_m};
 
 /// Mass and size of a fragment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

@@ -28,13 +28,13 @@ const SURFACE_VIEWS: usize = 300;
 
 /// A sphere: its centre relative to the middle of the fragment, in its principal axes, and its
 /// radius, m.
-pub(super) type Ball = (Vector3<f64>, f64);
+pub type Ball = (Vector3<f64>, f64);
 
 /// The directions across the sides of a square opening.
 type Opening = [Vector3<f64>; 2];
 
 /// Side of the smallest square opening that some spheres pass together, m. Zero for none.
-pub(super) fn smallest_opening_m(balls: &[Ball]) -> f64 {
+pub fn smallest_opening_m(balls: &[Ball]) -> f64 {
     let largest_m = 2.0 * balls.iter().map(|ball| ball.1).fold(0.0, f64::max);
     if balls.len() <= 2 {
         // Two spheres pass one after the other.
