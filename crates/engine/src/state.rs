@@ -270,9 +270,9 @@ impl State {
 
     /// Leaves out of the lists of walls what they do not touch, and requests a search before the
     /// next step: which particles were near depends on when the last search was, and so on
-    /// interruptions. Not with sleep, where being near wakes.
+    /// interruptions. When sleepers are next looked for does not change.
     pub fn forget_what_is_near(&mut self) {
-        let Some(contacts) = self.contacts.as_mut().filter(|_| self.sleep.is_none()) else {
+        let Some(contacts) = self.contacts.as_mut() else {
             return;
         };
         for wall in &mut self.walls {
@@ -281,7 +281,10 @@ impl State {
                 .extend(wall.touching.iter().map(|touch| touch.particle));
             wall.near.dedup();
         }
-        contacts.search_all();
+        contacts.forget_references();
+        if self.sleep.is_none() {
+            contacts.skin_left_m = -1.0;
+        }
     }
 
     /// The state from a checkpoint, with the model planned for it and everything that can be

@@ -72,8 +72,9 @@ pub(super) fn refuse_untouchable(scene: &Scene, template: &Template) -> Result<(
         let problem = "nothing can touch anything: the scene has no [contacts]";
         return Err(Diagnostic::input(place(), problem, "add [contacts]"));
     }
-    let is_fed = (scene.inlets.values()).any(|inlet| inlet.feeds(body));
-    let is_alone = !is_fed && !scene.walls.contains_key(body);
+    let inlets = scene.inlets.values().filter(|inlet| inlet.feeds(body));
+    let counts = inlets.map(|inlet| inlet.count.unwrap_or(u32::MAX));
+    let is_alone = counts.fold(0, u32::saturating_add) < 2 && !scene.walls.contains_key(body);
     if is_alone && !names.is_empty() && names.iter().all(|name| name == body) {
         let problem =
             format!("names '{body}' alone, of which there is one: it cannot touch itself");

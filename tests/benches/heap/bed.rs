@@ -7,6 +7,7 @@ use dem_run::physics::contact::law::Law;
 use dem_run::physics::contact::law::Rolling;
 use dem_run::physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
+use dem_run::physics::geometry::spatial_order::spatial_order;
 use dem_run::stages::ledger::bookkeeping::opened;
 use dem_run::stages::search::neighbours::near_pairs;
 use dem_run::state::State;
@@ -14,7 +15,6 @@ use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::Clusters;
 use dem_run::state::contacts::{ContactModel, Contacts};
 use dem_run::state::particles::Particles;
-use dem_run::physics::geometry::spatial_order::spatial_order;
 use dem_testing::Random;
 
 /// Number of cubes of a face-centred lattice along each side: with four sites each, of which some

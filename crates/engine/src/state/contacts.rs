@@ -283,10 +283,15 @@ impl Contacts {
 
     /// Requests a search for the neighbours of all particles before the next step.
     pub fn search_all(&mut self) {
+        self.forget_references();
+        self.skin_left_m = -1.0;
+    }
+
+    /// Forgets the last search: all particles are searched for before the next step.
+    pub(crate) fn forget_references(&mut self) {
         let references = &mut self.scratch.references;
         references.balls.clear();
         references.clusters = std::mem::take(&mut references.clusters).renumbered();
-        self.skin_left_m = -1.0;
     }
 
     /// Number of pairs whose law begins at an overlap that they separated with.

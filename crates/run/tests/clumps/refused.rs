@@ -40,6 +40,39 @@ fn replacement_without_bonds() {
 }
 
 #[test]
+fn triggers_by_the_touch_of_what_cannot_be_touched() {
+    let rule = "[replacement.lump]\nwhen = { touches = \"lump\" }\n";
+    let place = "replacement.lump.when.touches";
+    let one = format!(
+        "{HEAD}{MEETS}{}{rule}",
+        lump("lump", "start_as = \"clump\"")
+    );
+    refused(&one, place, "it cannot touch itself", "another body");
+    let fed = |count: &str| {
+        format!(
+            "{HEAD}{MEETS}{}{rule}[regions.gate]\nsphere = {{ centre = [0, 0, 0], radius = 0.1 }}\n\
+             [inlets.feed]\nbodies = [\"lump\"]\nregion = \"gate\"\nrate = 1\n{count}\n",
+            lump("lump", "start_as = \"clump\"")
+        )
+    };
+    refused(
+        &fed("count = 1"),
+        place,
+        "it cannot touch itself",
+        "another body",
+    );
+    for count in ["count = 2", ""] {
+        try_planned(&fed(count)).unwrap();
+    }
+    refused(
+        &one.replace(MEETS, ""),
+        place,
+        "no [contacts]",
+        "add [contacts]",
+    );
+}
+
+#[test]
 fn particle_damping() {
     let body = lump("lump", "start_as = \"clump\"");
     refused(

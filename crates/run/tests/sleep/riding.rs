@@ -179,6 +179,27 @@ fn bodies_ride_on_a_wall_that_rises() {
 }
 
 #[test]
+fn riders_of_many_spheres_are_at_no_wall() {
+    let places = (0..20).map(|n| [n % 5, n / 5].map(|n| 2.0 * RADIUS_M * f64::from(n)));
+    let spheres = places.map(|[x, y]| format!("[{x:e}, {y:e}, {RADIUS_M:e}, {RADIUS_M:e}]"));
+    let spheres: Vec<String> = spheres.collect();
+    let velocity = "velocity = [0.02, 0, 0.1]";
+    let body = format!(
+        "[bodies.rider]\nmaterial = \"stuff\"\nparticles = [{}]\n{CLUMP}\n{velocity}\n",
+        spheres.join(", ")
+    );
+    let mut state = started(&format!("{}{body}{GROUND}{velocity}\n{SLEEP}", head(0.0)));
+    go_until_asleep(&mut state, 1);
+    go(&mut state);
+    for _ in 0..2000 {
+        go(&mut state);
+        let wall = &state.walls[0];
+        assert!(wall.near.is_empty() && wall.touching.is_empty());
+    }
+    assert_eq!(sleep(&state).riders.len(), 1);
+}
+
+#[test]
 fn a_belt_that_is_slower_than_the_limit_of_sleep_carries() {
     let lying = slab("lying", [0.0, 0.0, 0.0], CLUMP);
     for motion in ["surface_velocity = [1e-4, 0, 0]", "velocity = [0, 0, 1e-4]"] {

@@ -78,7 +78,10 @@ fn speeds_m_s(
     let mut speeds = vec![0.0_f64; of_clusters.len()];
     let mut note = |id: u32, speed_m_s: f64| {
         if let Ok(at) = of_clusters.binary_search(&id) {
-            speeds[at] = speeds[at].max(speed_m_s);
+            // What is no number is not slow.
+            if speed_m_s > speeds[at] || speed_m_s.is_nan() {
+                speeds[at] = speed_m_s;
+            }
         }
     };
     let norm = |v: [f64; 3]| Vector3::from(v).norm();

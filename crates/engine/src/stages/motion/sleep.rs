@@ -73,7 +73,8 @@ pub(crate) fn update_sleep(state: &mut State) -> usize {
     let mut slow: Vec<u32> = Vec::new();
     for one in awake {
         let body = &mut sleep.of_cluster[one.cluster as usize];
-        if one.speed_m_s >= rule.speed_m_s {
+        let is_slow = one.speed_m_s < rule.speed_m_s;
+        if !is_slow {
             body.slow_since_s = f64::INFINITY;
             continue;
         }

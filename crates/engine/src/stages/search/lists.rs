@@ -121,6 +121,8 @@ fn leave_out_sleepers(state: &mut State) {
     pairs.clear();
     let both_awake = |pair: &&[u32; 2]| pair.iter().all(|&i| is_awake(i));
     pairs.extend(contacts.pairs.iter().filter(both_awake));
+    // Contacts that were frozen and taken back in one look are there twice.
+    pairs.dedup();
     let mut near = std::mem::take(&mut contacts.scratch.buffers.near);
     list_near_spheres(state, &pairs, &mut near);
     contacts.scratch.buffers.near = near;
@@ -300,7 +302,9 @@ fn add_reached(
     let is_reached = |[x, y, z, radius_m]: Ball| reaches([x, y, z], radius_m + wall.skin_left_m);
     let plane = plane_in_space(wall);
     let of_large = |large: &LargeCluster, found: &mut Vec<u32>| {
-        let any_seeks = !large.sleeps && (searched.seeks.is_none() || large.seeks);
+        // It may have fallen asleep since the clusters were updated.
+        let sleeps = searched.sleeps(known.groups.members(large.group));
+        let any_seeks = !sleeps && (searched.seeks.is_none() || large.seeks);
         if !any_seeks || !is_reached(ball_around(&large.bounds)) {
             return;
         }
