@@ -8,6 +8,7 @@
 //! [`Mesh`] is a surface with two sides, open or closed: it pushes towards the side of the centre,
 //! and a sphere whose centre has passed through is pushed on.
 
+pub mod balls;
 pub mod cylinder;
 pub mod frame;
 pub mod mesh;

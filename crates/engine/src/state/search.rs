@@ -1,6 +1,5 @@
 //! Data of the neighbour search.
 
-pub mod balls;
 pub(crate) mod buffers;
 pub mod clusters;
 pub(crate) mod grids;

@@ -11,10 +11,10 @@ use crate::stages::walls::{nearness, plane_in_space};
 use crate::state::State;
 use crate::state::clumps::Clumps;
 use crate::state::particles::{Particles, Pose};
-use crate::state::search::balls::around;
 use crate::state::sleep::{Rider, Sleep};
 use crate::state::walls::Wall;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::around;
 
 /// What could come near in this number of steps is looked at now.
 const STEPS_LEFT: f64 = 2.0;

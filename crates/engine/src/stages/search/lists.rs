@@ -26,12 +26,12 @@ use crate::state::bridges::Bridges;
 use crate::state::clumps::Clumps;
 use crate::state::clusters::Clusters;
 use crate::state::contacts::Contacts;
-use crate::state::search::balls::{Ball, ball_around};
 use crate::state::search::buffers::{Due, NearBuffers, SearchBuffers};
 use crate::state::search::clusters::{KnownClusters, LargeCluster, Searched};
 use crate::state::search::references::References;
 use crate::state::search::rigid_balls::ClumpReference;
 use crate::state::walls::Wall;
+use dem_physics::geometry::balls::{Ball, ball_around};
 
 /// The neighbour search.
 pub(crate) const SEARCH: Stage = Stage {

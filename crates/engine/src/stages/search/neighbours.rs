@@ -20,11 +20,11 @@ use self::among_small::{SmallMeetings, in_order};
 use self::meetings::list_with_small;
 use crate::stages::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use crate::state::particles::Pose;
-use crate::state::search::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
 use crate::state::search::buffers::{PairBuffers, PairTask};
 use crate::state::search::clusters::{KnownClusters, LargeCluster, Searched};
 use crate::state::search::rigid_balls::Placement;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
 use dem_physics::lanes::{LaneWork, Lanes, next_of, with_most_lanes};
 use dem_physics::number::Vec3;
 

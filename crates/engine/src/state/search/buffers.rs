@@ -1,8 +1,9 @@
 //! Vectors of the neighbour search, kept from one search to the next for their memory only.
 
-use super::balls::{Ball, BoxColumns};
+use super::clusters::KnownClusters;
 use super::grids::Grids;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::{Ball, BoxColumns};
 
 /// What is to be searched for.
 #[derive(Debug, Clone, Default)]
@@ -49,9 +50,15 @@ pub(crate) struct AwakeBuffers {
     /// Boxes around those that are awake: those that each task found, and all of them.
     pub(crate) box_tasks: Vec<Vec<Bounds>>,
     pub(crate) boxes: Vec<Bounds>,
-    /// The particles at rest beside those: those that each task found, and all of them.
+    /// The particles at rest beside those: those that each task found, and all of them with riders.
     pub(crate) tasks: Vec<AwakeTask>,
     pub(crate) particles: Vec<u32>,
+    /// Balls of these and of awake particles beside them, and for each whether it is awake.
+    pub(crate) balls: Vec<Ball>,
+    pub(crate) bodies: Vec<u32>,
+    /// Of the search among them.
+    pub(crate) known: KnownClusters,
+    pub(crate) pairs: PairBuffers,
 }
 
 /// Vectors of a task that looks for what is at rest beside something awake.
@@ -104,7 +111,8 @@ impl AwakeBuffers {
         let of_boxes: usize = self.box_tasks.iter().map(|some| bytes_of(some)).sum();
         let of_task = |task: &AwakeTask| bytes_of(&task.boxes) + bytes_of(&task.particles);
         let of_tasks: usize = self.tasks.iter().map(of_task).sum();
-        of_boxes + bytes_of(&self.boxes) + of_tasks + bytes_of(&self.particles)
+        let of_search = bytes_of(&self.balls) + bytes_of(&self.bodies) + self.pairs.bytes();
+        of_boxes + bytes_of(&self.boxes) + of_tasks + bytes_of(&self.particles) + of_search
     }
 }
 

@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use super::balls::{BLOCK, BOXES, Ball, Blocks, BoxColumns, around, box_columns};
 use super::rigid_balls::{ClumpReference, Placement, RigidBalls, RigidBody};
 use crate::state::clumps::Clumps;
 use crate::threads::for_each;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::{BLOCK, BOXES, Ball, Blocks, BoxColumns, around, box_columns};
 
 /// Clusters with fewer particles are small.
 const SMALL: usize = 16;

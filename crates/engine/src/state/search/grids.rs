@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::balls::{BOXES, Ball, NOWHERE};
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::{BOXES, Ball, NOWHERE};
 
 /// Balls of a level are at least half as large as the largest of it, except those of the last.
 const MOST_LEVELS: usize = 16;

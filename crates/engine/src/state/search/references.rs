@@ -1,8 +1,8 @@
 //! Where particles were when their neighbours were last searched for.
 
-use super::balls::Ball;
 use super::clusters::KnownClusters;
 use super::rigid_balls::ClumpReference;
+use dem_physics::geometry::balls::Ball;
 
 /// The last search for the neighbours of each particle. Its pairs cover all that can touch while no
 /// particle leaves its ball.

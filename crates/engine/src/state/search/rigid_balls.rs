@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::balls::{BLOCK, Ball, Blocks, NOWHERE};
 use crate::state::clumps::Template;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::{BLOCK, Ball, Blocks, NOWHERE};
 use dem_physics::rotation::rotation;
 
 /// A clump at the last search for its neighbours.

@@ -10,12 +10,12 @@ use crate::stages::chunks::{chunk_of, chunks_of, in_tasks};
 use crate::stages::clumps::motion::{place_all, place_awake};
 use crate::stages::motion::riding::{at_edges, list_riders_beside, look_ahead};
 use crate::stages::motion::sleep::{disturbed, freeze_contacts, wake};
-use crate::stages::search::neighbours::near_pairs;
+use crate::stages::search::neighbours::{ball_of, find_pairs_of_all};
 use crate::state::State;
-use crate::state::particles::{Particles, Pose};
-use crate::state::search::balls::around;
+use crate::state::particles::Particles;
 use crate::state::search::buffers::AwakeBuffers;
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::around;
 
 /// Consecutive particles that have a box around those that are awake.
 const PART: usize = 64;
@@ -81,24 +81,32 @@ fn skin_m(state: &State) -> f64 {
 
 /// Sleeping particles whose surface is less than `skin_m` from that of an awake one.
 fn sleepers_beside(state: &mut State, skin_m: f64, buffers: &mut AwakeBuffers) -> Vec<u32> {
-    let are_known = |state: &State| {
-        let sleep = state.sleep.as_ref();
-        sleep.is_none_or(|sleep| !sleep.boxes.is_empty())
-    };
-    if !are_known(state) {
+    let sleep = state.sleep.as_ref();
+    if sleep.is_some_and(|sleep| sleep.boxes.is_empty()) {
         let boxes = boxes_of_sleepers(state);
-        if let Some(sleep) = &mut state.sleep {
-            sleep.boxes = boxes;
-        }
+        state
+            .sleep
+            .iter_mut()
+            .for_each(|sleep| sleep.boxes.clone_from(&boxes));
     }
     list_boxes_of_awake(&state.particles, skin_m, buffers);
-    let mut sleepers = list_riders_beside(state, &buffers.boxes);
+    let mut riders = list_riders_beside(state, &buffers.boxes);
     list_at_rest_beside(state, buffers);
-    sleepers.extend_from_slice(&buffers.particles);
-    if sleepers.is_empty() {
-        return sleepers;
+    let AwakeBuffers {
+        particles: sleepers,
+        balls,
+        bodies,
+        known,
+        pairs,
+        ..
+    } = buffers;
+    if !riders.is_empty() {
+        sleepers.append(&mut riders);
+        sleepers.sort_unstable();
     }
-    sleepers.sort_unstable();
+    if sleepers.is_empty() {
+        return Vec::new();
+    }
     let p = &state.particles;
     let all_sleepers = box_of(p, sleepers.iter().map(|&i| i as usize)).grown(1.01 * skin_m);
     let is_beside =
@@ -107,14 +115,15 @@ fn sleepers_beside(state: &mut State, skin_m: f64, buffers: &mut AwakeBuffers) -
     let awake = chunks
         .flat_map(|chunk| chunk_of(chunk, p.len()))
         .filter(is_beside);
-    let known = sleepers.iter().map(|&i| i as usize);
-    let poses: Vec<Pose> = known.chain(awake).map(|i| p.poses[i]).collect();
+    let both = sleepers.iter().map(|&i| i as usize).chain(awake);
+    balls.clear();
+    balls.extend(both.map(|i| ball_of(&p.poses[i], skin_m)));
     // All that sleep count as one body, and all that are awake as another.
-    let bodies: Vec<u32> = (0..poses.len())
-        .map(|n| u32::from(n >= sleepers.len()))
-        .collect();
-    let pairs = near_pairs(&poses, &bodies, skin_m);
-    pairs.iter().map(|[n, _]| sleepers[*n as usize]).collect()
+    bodies.clear();
+    bodies.extend((0..balls.len()).map(|n| u32::from(n >= sleepers.len())));
+    find_pairs_of_all(balls, bodies, known, pairs);
+    let near = pairs.found.iter().map(|[n, _]| sleepers[*n as usize]);
+    near.collect()
 }
 
 /// For each chunk of particles the box around those that sleep and do not ride, m.

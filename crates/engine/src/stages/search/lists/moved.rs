@@ -10,11 +10,11 @@ use crate::state::State;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::Contacts;
 use crate::state::particles::{Particles, Pose};
-use crate::state::search::balls::Ball;
 use crate::state::search::buffers::{Due, SearchBuffers};
 use crate::state::search::clusters::is_large;
 use crate::state::search::references::References;
 use crate::state::search::rigid_balls::ClumpReference;
+use dem_physics::geometry::balls::Ball;
 use dem_physics::rotation::rotation;
 
 /// The distance of a free particle is also at least that for this fraction of the speed of the

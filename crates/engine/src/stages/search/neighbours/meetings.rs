@@ -1,9 +1,9 @@
 //! Where clusters may meet small ones.
 
-use crate::state::search::balls::{Ball, around, box_of};
 use crate::state::search::buffers::PairBuffers;
 use crate::state::search::clusters::{KnownClusters, Searched};
 use dem_physics::geometry::Bounds;
+use dem_physics::geometry::balls::{Ball, around, box_of};
 
 /// Lists the balls that may be in a pair with one of a small cluster, ascending by number.
 pub(super) fn list_with_small(

@@ -4,9 +4,9 @@ use proptest::prelude::*;
 
 use super::among_small::SmallMeetings;
 use super::find_pairs;
-use crate::state::search::balls::Ball;
 use crate::state::search::buffers::PairBuffers;
 use crate::state::search::clusters::{KnownClusters, Searched};
+use dem_physics::geometry::balls::Ball;
 use dem_physics::lanes::{LaneWork, with_lanes, with_most_lanes};
 
 /// Pairs of overlapping balls of different clusters of which at least one seeks, one by one.

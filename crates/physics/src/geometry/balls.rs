@@ -2,34 +2,34 @@
 
 use nalgebra::Vector3;
 
-use dem_physics::geometry::Bounds;
+use super::Bounds;
 
 /// Centre x, y, z and radius, m.
 pub type Ball = [f64; 4];
 
 /// Number of balls, in the order of a cluster, that have a box of their own. Near ones follow one
 /// another.
-pub(crate) const BLOCK: usize = 16;
+pub const BLOCK: usize = 16;
 /// Number of boxes that are compared at once.
-pub(crate) const BOXES: usize = 8;
+pub const BOXES: usize = 8;
 
 /// A ball that overlaps none.
-pub(crate) const NOWHERE: Ball = [f64::INFINITY, 0.0, 0.0, 0.0];
+pub const NOWHERE: Ball = [f64::INFINITY, 0.0, 0.0, 0.0];
 
 /// Some boxes by columns: their lower ends along x, y and z, then the upper ones, m.
-pub(crate) type BoxColumns = [[f64; BOXES]; 6];
+pub type BoxColumns = [[f64; BOXES]; 6];
 
 /// Boxes around blocks of balls.
 #[derive(Debug, Clone)]
 pub struct Blocks {
     /// Box around all of them.
-    pub(crate) bounds: Bounds,
+    pub bounds: Bounds,
     /// Box around each [`BLOCK`] of balls.
-    pub(crate) boxes: Vec<Bounds>,
+    pub boxes: Vec<Bounds>,
     /// Ball around each of these boxes.
-    pub(crate) around: Vec<Ball>,
+    pub around: Vec<Ball>,
     /// The boxes, [`BOXES`] at once, filled up with empty ones.
-    pub(crate) columns: Vec<BoxColumns>,
+    pub columns: Vec<BoxColumns>,
 }
 
 impl Default for Blocks {
@@ -45,7 +45,7 @@ impl Default for Blocks {
 
 impl Blocks {
     /// The blocks of these balls.
-    pub(crate) fn of(balls: &[Ball]) -> Self {
+    pub fn of(balls: &[Ball]) -> Self {
         let mut blocks = Self::default();
         let numbers: Vec<u32> = (0..balls.len() as u32).collect();
         blocks.find(&numbers, balls);
@@ -53,7 +53,7 @@ impl Blocks {
     }
 
     /// Makes the boxes around the balls with these numbers.
-    pub(crate) fn find(&mut self, some: &[u32], balls: &[Ball]) {
+    pub fn find(&mut self, some: &[u32], balls: &[Ball]) {
         self.boxes.clear();
         self.boxes
             .extend(some.chunks(BLOCK).map(|some| box_of(some, balls)));
@@ -68,7 +68,7 @@ impl Blocks {
 }
 
 /// At most [`BOXES`] boxes by columns, filled up with empty ones.
-pub(crate) fn box_columns(some: impl Iterator<Item = Bounds>) -> BoxColumns {
+pub fn box_columns(some: impl Iterator<Item = Bounds>) -> BoxColumns {
     let Bounds { low, high } = Bounds::EMPTY;
     let mut columns = [low[0], low[1], low[2], high[0], high[1], high[2]].map(|c| [c; BOXES]);
     for (n, bounds) in some.enumerate() {
@@ -81,7 +81,7 @@ pub(crate) fn box_columns(some: impl Iterator<Item = Bounds>) -> BoxColumns {
 }
 
 /// The box around the balls with these numbers.
-pub(crate) fn box_of(some: &[u32], balls: &[Ball]) -> Bounds {
+pub fn box_of(some: &[u32], balls: &[Ball]) -> Bounds {
     // Four numbers at once, by comparisons that are one operation each: the fourth is not used.
     let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
     for &i in some {
@@ -100,7 +100,7 @@ pub(crate) fn box_of(some: &[u32], balls: &[Ball]) -> Bounds {
 }
 
 /// The box around a ball.
-pub(crate) fn around(&[x, y, z, radius_m]: &Ball) -> Bounds {
+pub fn around(&[x, y, z, radius_m]: &Ball) -> Bounds {
     Bounds {
         low: [x - radius_m, y - radius_m, z - radius_m],
         high: [x + radius_m, y + radius_m, z + radius_m],
@@ -108,7 +108,7 @@ pub(crate) fn around(&[x, y, z, radius_m]: &Ball) -> Bounds {
 }
 
 /// A ball around a box.
-pub(crate) fn ball_around(bounds: &Bounds) -> Ball {
+pub fn ball_around(bounds: &Bounds) -> Ball {
     let [low, high] = [bounds.low, bounds.high].map(Vector3::from);
     let centre = 0.5 * (low + high);
     [centre.x, centre.y, centre.z, 0.5 * (high - low).norm()]
