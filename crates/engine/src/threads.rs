@@ -274,12 +274,12 @@ fn help_until_done(team: &Team) {
     }
 }
 
-#[cfg(test)]
 #[expect(
     clippy::expect_used,
     clippy::panic,
     reason = "a test stops where it fails"
 )]
+#[cfg(test)]
 mod tests {
     use super::*;
 

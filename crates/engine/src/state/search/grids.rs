@@ -16,7 +16,7 @@ const CELLS_PER_BALL: usize = 4;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Grids {
     /// On the heap: contacts, which hold them, are often moved.
-    levels: Box<[Grid; MOST_LEVELS]>,
+    levels: Vec<Grid>,
     largest_m: f64,
 }
 
@@ -44,6 +44,7 @@ impl Grids {
     /// Holds these balls, given with their numbers, in place of those before. Their radii are
     /// above 0.
     pub(crate) fn fill(&mut self, active: &[(u32, Ball)]) {
+        self.levels.resize_with(MOST_LEVELS, Grid::default);
         self.largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
         for level in self.levels.iter_mut() {
             level.members.clear();
