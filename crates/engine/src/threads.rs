@@ -1,7 +1,7 @@
-//! Threads that share the loops of a step, and stay ready for the next. A step is a sequence of short
-//! loops. Between two of them the threads of a pool would go to sleep, and to wake one takes as long
-//! as many a loop; a pool takes a few microseconds to divide a loop even among threads that are
-//! awake. Here the one that steps says in one atomic number what there is to do.
+//! Threads that share the loops of a step, and stay ready for the next. A step is a sequence of
+//! short loops. Between two of them the threads of a pool would go to sleep, and to wake one takes
+//! as long as many a loop; a pool takes a few microseconds to divide a loop even among threads that
+//! are awake. Here the one that steps says in one atomic number what there is to do.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -85,8 +85,8 @@ type Work<'a> = &'a (dyn Fn(usize) + Sync);
 #[derive(Default)]
 struct Team {
     /// What is left of the present loop, from the highest bits: 32 of the number of the loop, 16 of
-    /// the end of the parts and 16 of their start. The one that steps takes parts from the start, its
-    /// helpers from the end: so a thread mostly works on the same particles from loop to loop.
+    /// the end of the parts and 16 of their start. The one that steps takes parts from the start,
+    /// its helpers from the end: so a thread mostly works on the same particles from loop to loop.
     left: AtomicU64,
     /// The [`Work`] of the present loop.
     work: AtomicPtr<()>,
@@ -104,7 +104,7 @@ enum Side {
     End,
 }
 
-/// The numbers of the first and the last part of what is left, and one more than that.
+/// The start and the end of the parts that are left.
 fn parts_of(left: u64) -> [usize; 2] {
     [
         left as usize & MOST_PARTS,
@@ -364,7 +364,7 @@ mod tests {
         on_two_threads(|| {
             keep_awake(|| {
                 for bad in 0..50 {
-                    let mut done = vec![0; 50];
+                    let mut done = [0; 50];
                     let panicked = catch_unwind(AssertUnwindSafe(|| {
                         for_each(done.iter_mut().enumerate(), |(n, done)| {
                             assert!(n != bad, "on purpose");
@@ -372,7 +372,7 @@ mod tests {
                         });
                     }));
                     assert!(panicked.is_err() && done[bad] == 0);
-                    let mut next = vec![0; 50];
+                    let mut next = [0; 50];
                     for_each(next.iter_mut(), |next| *next += 1);
                     assert_eq!(next, [1; 50]);
                 }

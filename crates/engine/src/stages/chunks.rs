@@ -69,7 +69,8 @@ pub(crate) fn sums_of_chunks<const N: usize>(
     let chunks = count.div_ceil(CHUNK);
     let each = chunks.div_ceil(PARTS);
     let mut parts = [[0.0; N]; PARTS];
-    for_each(parts.iter_mut().enumerate(), |(part, sums)| {
+    let used = parts[..chunks.div_ceil(each)].iter_mut().enumerate();
+    for_each(used, |(part, sums)| {
         let own = part * each..chunks.min((part + 1) * each);
         *sums = own.map(of_chunk).fold([0.0; N], add);
     });

@@ -14,7 +14,6 @@ pub use self::motion::fastest_point_m_s;
 pub(crate) use self::motion::{
     drift_walls, has_moved, moves, plan_wall_motions, surface_velocity_m_s, will_move,
 };
-use super::chunks::{chunk_of, chunks_of, in_tasks};
 use super::stage::{Need, Stage};
 use crate::stages::contacts::forces::{StoredEnergy, StoredForce};
 use crate::state::State;
@@ -103,42 +102,15 @@ const FEW: usize = 4 * CHUNK;
 /// between the normals exceeds this.
 pub(super) const SAME_WAY: f64 = 0.9;
 
-/// Lists the particles whose surface is less than `skin_m` from a wall, without sleeping ones.
-/// `of_tasks`: kept for their memory.
-pub(crate) fn list_near(
-    walls: &mut [Wall],
-    particles: &Particles,
-    skin_m: f64,
-    of_tasks: &mut Vec<Vec<u32>>,
-) {
+/// Lists the particles whose surface is less than `skin_m` from a wall, where none sleeps.
+pub(crate) fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     for wall in walls {
-        let mut near = std::mem::take(&mut wall.near);
-        find_near(wall, particles, skin_m, of_tasks, &mut near);
-        wall.near = near;
-    }
-}
-
-/// As [`list_near`], for one wall.
-fn find_near(
-    wall: &Wall,
-    particles: &Particles,
-    skin_m: f64,
-    of_tasks: &mut Vec<Vec<u32>>,
-    all_near: &mut Vec<u32>,
-) {
-    let is_near = nearness(wall, skin_m);
-    let is_near = |&i: &usize| !particles.sleeps(i) && is_near(&particles.poses[i]);
-    let count = chunks_of(particles.len()).len();
-    let of_chunks = in_tasks(count, of_tasks, |chunk, near| {
-        near.clear();
-        if !particles.asleep.is_whole(chunk) {
-            let some = chunk_of(chunk, particles.len());
-            near.extend(some.filter(is_near).map(|i| i as u32));
-        }
-    });
-    all_near.clear();
-    for near in of_chunks {
-        all_near.extend_from_slice(near);
+        wall.near = {
+            let is_near = nearness(wall, skin_m);
+            let numbered = (0..).zip(&particles.poses);
+            let near = numbered.filter(|(_, pose)| is_near(pose));
+            near.map(|(i, _)| i).collect()
+        };
     }
 }
 

@@ -58,7 +58,7 @@ impl MovingWalls {
             let place = Vector3::from(start.position_m) + fraction * way_m;
             wall.frame.position_m = place.into();
         }
-        list_near(&mut state.walls, &state.particles, skin_m, &mut Vec::new());
+        list_near(&mut state.walls, &state.particles, skin_m);
     }
 }
 

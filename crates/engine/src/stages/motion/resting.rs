@@ -67,8 +67,8 @@ pub(super) fn awake_bodies(state: &State) -> Vec<AwakeBody> {
     bodies
 }
 
-/// For each of these clusters an upper bound of the speed of its points relative to a velocity, m/s.
-/// `awake`: the free particles that are awake.
+/// For each of these clusters an upper bound of the speed of its points relative to a velocity,
+/// m/s. `awake`: the free particles that are awake.
 fn speeds_m_s(
     state: &State,
     of_clusters: &[u32],

@@ -112,8 +112,8 @@ fn leave_out_sleepers(state: &mut State) {
     let Some(mut contacts) = state.contacts.take() else {
         return;
     };
-    let asleep = &state.particles.asleep;
-    let is_awake = |i: u32| !asleep.get(i as usize).is_some_and(|asleep| *asleep);
+    let p = &state.particles;
+    let is_awake = |i: u32| !p.sleeps(i as usize);
     for wall in &mut state.walls {
         wall.near.retain(|&i| is_awake(i));
     }
@@ -302,7 +302,6 @@ fn add_reached(
     let is_reached = |[x, y, z, radius_m]: Ball| reaches([x, y, z], radius_m + wall.skin_left_m);
     let plane = plane_in_space(wall);
     let of_large = |large: &LargeCluster, found: &mut Vec<u32>| {
-        // It may have fallen asleep since the clusters were updated.
         let sleeps = searched.sleeps(known.groups.members(large.group));
         let any_seeks = !sleeps && (searched.seeks.is_none() || large.seeks);
         if !any_seeks || !is_reached(ball_around(&large.bounds)) {

@@ -80,8 +80,6 @@ pub struct LargeCluster {
     pub(crate) rigid: Option<RigidBody>,
     /// Whether any of its balls seeks.
     pub(crate) seeks: bool,
-    /// Whether it sleeps: then it is not searched.
-    pub(crate) sleeps: bool,
     /// Whether its boxes are yet to be found.
     is_new: bool,
 }
@@ -102,15 +100,15 @@ impl KnownClusters {
         let groups = &self.groups;
         let update = |large: &mut LargeCluster| {
             let members = groups.members(large.group);
-            large.sleeps = searched.sleeps(members);
+            let sleeps = searched.sleeps(members);
             // The spheres of a clump seek together.
             let some = if large.rigid.is_some() {
                 &members[..1]
             } else {
                 members
             };
-            large.seeks = !large.sleeps && some.iter().any(|&i| searched.is_seeking(i));
-            if large.seeks || large.is_new && !large.sleeps {
+            large.seeks = !sleeps && some.iter().any(|&i| searched.is_seeking(i));
+            if large.seeks || large.is_new && !sleeps {
                 large.find_boxes(members, searched);
                 large.is_new = false;
             }
@@ -118,19 +116,21 @@ impl KnownClusters {
         for_each(self.large.chunks_mut(UPDATED_AT_ONCE), |some| {
             some.iter_mut().for_each(update);
         });
-        self.sort_boxes();
+        self.sort_boxes(searched);
     }
 
     /// Sorts the large clusters that are awake by the lower ends of their boxes.
-    fn sort_boxes(&mut self) {
+    fn sort_boxes(&mut self, searched: &Searched<'_>) {
         let Self {
+            groups,
             large,
             by_low_end_m: order,
             columns,
             ..
         } = self;
         order.clear();
-        let awake = (0..).zip(&*large).filter(|(_, large)| !large.sleeps);
+        let awake = (0..).zip(&*large);
+        let awake = awake.filter(|(_, large)| !searched.sleeps(groups.members(large.group)));
         order.extend(awake.map(|(place, large)| (large.bounds.low[0], place)));
         order.sort_unstable_by(|(a_m, a), (b_m, b)| a_m.total_cmp(b_m).then(a.cmp(b)));
         let box_of = |&(_, place): &(f64, u32)| large[place as usize].bounds;
@@ -241,7 +241,6 @@ impl LargeCluster {
             blocks: blocks.unwrap_or_default(),
             rigid,
             seeks: true,
-            sleeps: false,
             is_new: true,
         }
     }

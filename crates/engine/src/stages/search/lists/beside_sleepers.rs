@@ -1,6 +1,6 @@
-//! Sleeping bodies beside awake ones: they wake when something moving comes near, before it can touch
-//! them. So lists of neighbours are of awake particles alone. How long a look takes depends on what
-//! is awake.
+//! Sleeping bodies beside awake ones: they wake when something moving comes near, before it can
+//! touch them. So lists of neighbours are of awake particles alone. How long a look takes depends
+//! on what is awake.
 
 use std::ops::Range;
 
@@ -84,10 +84,9 @@ fn sleepers_beside(state: &mut State, skin_m: f64, buffers: &mut AwakeBuffers) -
     let sleep = state.sleep.as_ref();
     if sleep.is_some_and(|sleep| sleep.boxes.is_empty()) {
         let boxes = boxes_of_sleepers(state);
-        state
-            .sleep
-            .iter_mut()
-            .for_each(|sleep| sleep.boxes.clone_from(&boxes));
+        if let Some(sleep) = &mut state.sleep {
+            sleep.boxes = boxes;
+        }
     }
     list_boxes_of_awake(&state.particles, skin_m, buffers);
     let mut riders = list_riders_beside(state, &buffers.boxes);

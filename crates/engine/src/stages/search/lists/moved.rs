@@ -126,8 +126,8 @@ fn add_clumps_soon_due(state: &State, references: &mut References, due: &mut Due
     }
 }
 
-/// Whether anything is due that is not requested, among the chunks and clumps that have used up what
-/// was surely left. Of those that are not, it finds what is left.
+/// Whether anything is due that is not requested, among the chunks and clumps that have used up
+/// what was surely left. Of those that are not, it finds what is left.
 fn is_urgent(state: &State, references: &mut References) -> bool {
     let p = &state.particles;
     let mut urgent = false;

@@ -1,7 +1,7 @@
 //! Where clusters may meet small ones.
 
 use crate::state::search::buffers::PairBuffers;
-use crate::state::search::clusters::{KnownClusters, Searched};
+use crate::state::search::clusters::{KnownClusters, LargeCluster, Searched};
 use dem_physics::geometry::Bounds;
 use dem_physics::geometry::balls::{Ball, around, box_of};
 
@@ -30,7 +30,8 @@ pub(super) fn list_with_small(
     let balls = searched.balls;
     let [all, seeking] = bounds_of(small, known, searched);
     let mut where_sought = seeking;
-    for large in known.large.iter().filter(|large| !large.sleeps) {
+    let sleeps = |large: &LargeCluster| searched.sleeps(groups.members(large.group));
+    for large in known.large.iter().filter(|large| !sleeps(large)) {
         let of_small = if large.seeks { &all } else { &seeking };
         let common = large.bounds.common(of_small);
         if common == Bounds::EMPTY {
