@@ -23,8 +23,9 @@ def read_table(file: Path, texts: Sequence[str] = ()) -> pd.DataFrame:
     options: dict[str, Any] = {"float_precision": "round_trip"} if is_older else {}
     # Names such as None and NA are names.
     options |= {"keep_default_na": False, "na_values": ["", "NaN"]}
-    table: pd.DataFrame = pd.read_csv(file, converters=dict.fromkeys(texts, str), **options)
-    return table
+    table = pd.read_csv(file, dtype=dict.fromkeys(texts, "str"), **options)
+    filled: pd.DataFrame = table.fillna(dict.fromkeys(texts, ""))
+    return filled
 
 
 def read_json(folder: Path, name: str, of: str) -> dict[str, Any]:
