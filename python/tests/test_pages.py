@@ -18,13 +18,16 @@ import crumble
 NOTEBOOK = ROOT / "python" / "examples" / "first_break.ipynb"
 
 
-def run_code_of(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, object]:
+def run_code_of(
+    page: str, blocks_at_least: int, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> dict[str, object]:
     """The names that the Python code of a page leaves, run in a folder with copies of `data`."""
     for name in ("bodies", "scenes", "shapes", "studies"):
         shutil.copytree(ROOT / "data" / name, folder / "data" / name)
     monkeypatch.chdir(folder)
     matplotlib.use("Agg")
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    assert len(blocks) >= blocks_at_least
     names: dict[str, object] = {}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -36,7 +39,7 @@ def run_code_of(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dic
 
 
 def test_the_code_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = run_code_of("doc/python.md", tmp_path, monkeypatch)
+    names = run_code_of("doc/python.md", 8, tmp_path, monkeypatch)
     assert (tmp_path / "cake.vtp").is_file() and (tmp_path / "cake-falls-out" / "report.html").is_file()
     assert (tmp_path / "falls-out" / "5" / "report.html").is_file()
     made = [path.name for path in tmp_path.iterdir() if path.name != "data"]
@@ -48,7 +51,7 @@ def test_the_code_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_the_code_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = run_code_of("python/README.md", tmp_path, monkeypatch)
+    names = run_code_of("python/README.md", 1, tmp_path, monkeypatch)
     assert len(cast("crumble.Sweep", names["study"]).find) == 3
     assert cast("crumble.Results", names["fall"]).units == {"pieces": ""}
 
