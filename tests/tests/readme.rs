@@ -327,7 +327,7 @@ fn options(text: &str) -> Vec<String> {
 #[test]
 fn the_readme_is_short() {
     let words = read("README.md").split_whitespace().count();
-    assert!(words <= 1200, "README.md has {words} words");
+    assert!(words <= 900, "README.md has {words} words");
 }
 
 #[test]

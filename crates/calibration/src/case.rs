@@ -95,6 +95,8 @@ pub struct Case {
     pub bonds: usize,
     /// Smallest extent of the body over the mean diameter of its spheres.
     pub spheres_across: f64,
+    /// Mean diameter of the spheres of the first packing, m.
+    pub mean_diameter_m: f64,
     /// The first factors. None: 1.
     pub start: Option<Start>,
     /// The rounds.

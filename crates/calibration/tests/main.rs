@@ -45,6 +45,7 @@ fn empty(name: &str) -> Case {
         particles: 100,
         bonds: 400,
         spheres_across: 5.0,
+        mean_diameter_m: 6e-3,
         start: None,
         rounds: Vec::new(),
         end: None,

@@ -4,6 +4,7 @@
 //! the file's name, `summary` lists the contents of a body, [`mass`] computes its mass.
 
 pub(crate) mod check;
+mod coarse;
 pub mod csv;
 pub mod files;
 pub mod histories;
@@ -20,6 +21,7 @@ mod table;
 pub mod txt;
 pub mod vtp;
 
+pub use coarse::{ENOUGH_ACROSS, few_across};
 pub use files::{read_body, read_frame, read_particles, read_spheres, read_walls, write_body};
 pub use histories::BondColumn;
 pub use parts::{About, Body};

@@ -8,7 +8,7 @@ use crate::pack::{
     PackHistory, PackSettings, Packing, Progress, Solid, can_fill_voids, pack_solid,
 };
 use crate::quality::{
-    BondedPacking, DEFAULT_GAP_LIMIT, Report, assess, depth_needed, find_warnings,
+    BondedPacking, DEFAULT_GAP_LIMIT, Report, Thinnest, assess, depth_needed, find_warnings,
 };
 use crate::sizes::Sizes;
 use crate::spheres::{Spheres, Vector3};
@@ -98,7 +98,7 @@ pub fn make_body(
 ) -> Result<(Body, BodyReport)> {
     let (made, mut quality) = make(surface, settings, progress, assess)?;
     quality.warnings.extend(made.packed.warnings());
-    let body = made.body(settings, quality.warnings.clone());
+    let body = made.body(settings, quality.thinnest, quality.warnings.clone());
     let report = BodyReport {
         mass: of_named_density(&body),
         mass_over_shape: spheres_volume_m3(&body) / surface.volume_m3(),
@@ -123,9 +123,9 @@ pub fn make_body_only(
     settings: &BodySettings,
     progress: Progress,
 ) -> Result<Body> {
-    let (made, mut warnings) = make(surface, settings, progress, find_warnings)?;
+    let (made, (thinnest, mut warnings)) = make(surface, settings, progress, find_warnings)?;
     warnings.extend(made.packed.warnings());
-    Ok(made.body(settings, warnings))
+    Ok(made.body(settings, thinnest, warnings))
 }
 
 /// A bonded packing.
@@ -261,7 +261,12 @@ impl Packed {
 
 impl Made<'_> {
     /// The body in metres.
-    fn body(&self, settings: &BodySettings, warnings: Vec<String>) -> Body {
+    fn body(
+        &self,
+        settings: &BodySettings,
+        thinnest: Option<Thinnest>,
+        warnings: Vec<String>,
+    ) -> Body {
         let surface = self.solid.surface;
         let spheres = &self.packed.packing.spheres;
         let in_metres =
@@ -290,6 +295,8 @@ impl Made<'_> {
                 overlap: Some(self.packed.settings.overlap),
                 bond_range: Some(self.bond_range),
                 seed: Some(self.packed.settings.seed),
+                thinnest_part_m: thinnest.map(|thinnest| thinnest.thickness_m),
+                particles_across: thinnest.map(|thinnest| thinnest.particles_across),
                 warnings,
             },
         }

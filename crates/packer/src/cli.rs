@@ -10,7 +10,7 @@ pub use self::arguments::Arguments;
 use self::arguments::{Command, PackArguments, Reading};
 use self::bond::bond;
 pub use self::recipe::Recipe;
-use self::report::{summary_text, surface_summary, surface_text};
+use self::report::{short_text, summary_text, surface_summary, surface_text};
 use self::shape::{check_unit_of_diameter, read_surface};
 use crate::body::{BodySettings, make_body, make_body_only};
 use crate::sizes::Sizes;
@@ -118,10 +118,14 @@ fn pack_and_write(
     bar.finish_and_clear();
     drop(body);
 
-    let text = summary_text(&surface, &made, output);
     if arguments.json {
         return write_standard_json(&made);
     }
+    let text = if arguments.verbose {
+        summary_text(&surface, &made, output)
+    } else {
+        short_text(&surface, &made, output)
+    };
     if arguments.output.is_some() && output != Path::new("-") {
         write_standard_output(|out| out.write_all(text.as_bytes()))
     } else {

@@ -35,11 +35,13 @@ pub fn assess(packing: &BondedPacking) -> Result<Report> {
     })
 }
 
-/// The warnings of [`assess`] without what no warning needs, of which the densities take longest.
-pub(crate) fn find_warnings(packing: &BondedPacking) -> Result<Vec<String>> {
+/// The thinnest part and the warnings of [`assess`] without the rest, of which the densities take
+/// longest.
+pub(crate) fn find_warnings(packing: &BondedPacking) -> Result<(Option<Thinnest>, Vec<String>)> {
     with_finite_depths(packing, |packing| {
         let depths = depth::of_centres(packing, depth_needed(packing.spheres));
-        Ok(warnings(&Checks::new(packing, &depths)?, packing.parts))
+        let checks = Checks::new(packing, &depths)?;
+        Ok((checks.thinnest, warnings(&checks, packing.parts)))
     })
 }
 
@@ -96,6 +98,7 @@ fn report(packing: &BondedPacking, checks: Checks) -> Report {
         fabric: fabric::of(spheres, packing.bonds, |_| true),
         interior_fabric: checks.interior_fabric,
         thinnest: checks.thinnest,
+        coarse: checks.thinnest.and_then(|thinnest| thinnest.few()),
         warnings,
     }
 }

@@ -71,6 +71,7 @@ use self::measure::measurement::Measurement;
 use self::measure::refused::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::placement::placed;
+use self::quality::Quality;
 use self::rules::{doubts, rules};
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
@@ -105,6 +106,8 @@ pub struct Plan {
     pub notes: Vec<String>,
     /// Reasons to doubt the result that are known before the run, a sentence each.
     pub warnings: Vec<String>,
+    /// Why the result depends on the size of the spheres, a sentence each.
+    pub coarse: Vec<String>,
     /// Forecast of the run, as far as possible.
     pub forecast: Forecast,
     /// Inputs of the plan, for the results.
@@ -132,7 +135,10 @@ pub fn plan(
         .map(|(name, body)| (name.clone(), body.about.clone()))
         .collect();
     refuse_endless_fall(scene)?;
-    let looked_at = quality::warnings(scene, &read);
+    let Quality {
+        mut warnings,
+        coarse,
+    } = quality::of_bodies(scene, &read);
     let ball_m = ball_m(scene, &read);
     let named = named_bodies(scene, &read);
     let unused_bonds = unused_bonds(scene, &read);
@@ -163,7 +169,6 @@ pub fn plan(
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     place_zones(scene, &bodies, &mut state)?;
     refuse_valueless(scene, &groups, &state, &masses)?;
-    let mut warnings = masses::warnings(scene, &about, &looked_at);
     warnings.extend(masses::odd_densities(scene, &state, &bodies));
     warnings.extend(doubts(scene, &state));
     warnings.extend(questions::doubts(scene, &state, &bodies));
@@ -191,6 +196,7 @@ pub fn plan(
         masses,
         notes: told_once(notes, scene.bodies.keys()),
         warnings: told_once(warnings, scene.bodies.keys()),
+        coarse: told_once(coarse, scene.bodies.keys()),
         forecast,
         inputs,
     })

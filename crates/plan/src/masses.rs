@@ -7,7 +7,7 @@ use dem_io::body::About;
 use dem_io::body::inertia::MassProperties;
 use dem_io::body::mass::{BodyMass, percent_text};
 use dem_io::units::significant;
-use dem_scene::{BodySource, Scene, WholeMass};
+use dem_scene::{Scene, WholeMass};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::bodies::material_density_kg_m3;
@@ -104,34 +104,6 @@ pub(crate) fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<S
         ))
     };
     unsaid.filter_map(note).collect()
-}
-
-/// Warnings of the programs that made the bodies, and those about bodies of no program, a sentence
-/// each.
-pub(crate) fn warnings(
-    scene: &Scene,
-    about: &BTreeMap<String, About>,
-    looked_at: &BTreeMap<String, Vec<String>>,
-) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for (name, about) in about {
-        let file = scene
-            .bodies
-            .get(name)
-            .and_then(|entry| match &entry.source {
-                BodySource::File(path) => Some(path.display().to_string()),
-                BodySource::Inline { .. } => None,
-            });
-        let file = file.map_or(String::new(), |file| format!(" ({file})"));
-        let by = about.program.as_deref().unwrap_or_default();
-        let by = by.split(' ').next().filter(|by| !by.is_empty());
-        let by = by.unwrap_or("the program that made it");
-        let said = about.warnings.iter();
-        warnings.extend(said.map(|text| format!("body '{name}'{file}: {by} warned: {text}")));
-        let seen = looked_at.get(name).into_iter().flatten();
-        warnings.extend(seen.map(|text| format!("body '{name}'{file}: {text}")));
-    }
-    warnings
 }
 
 /// Densities that are hardly those of a solid in kg/m3, written or by the mass of a body: a

@@ -1,41 +1,84 @@
-//! Warnings about bodies that no program has looked at: from a table, or written in the scene.
-//! Those
-//! of dem-pack are in its files.
+//! The quality of bonded bodies: warnings of the programs that made them, those about bodies that no
+//! program has looked at, and bodies with few particles across.
 
 use std::collections::BTreeMap;
 
 use dem_io::Body;
+use dem_io::body::few_across;
 use dem_io::disjoint::DisjointSets;
-use dem_io::units::{show_length, significant};
-use dem_scene::Scene;
+use dem_io::units::significant;
+use dem_scene::{BodySource, Scene};
 
 use super::bodies::stays_rigid;
 use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
 
-/// As dem-pack: number of bonds per particle below which a body is hardly rigid, and of particles
-/// across below which a body shows its particles more than its material.
+/// As dem-pack: number of bonds per particle below which a body is hardly rigid.
 const ENOUGH_BONDS: f64 = 3.0;
-const ENOUGH_ACROSS: f64 = 10.0;
 /// A body of fewer spheres is written by hand, and no packing.
 const FEWEST: usize = 20;
 /// Width of a chain of spheres over the largest diameter.
 const CHAIN: f64 = 1.05;
+/// Bonds are calibrated for spheres whose mean diameter differs by at most this fraction.
+const SAME_DIAMETER: f64 = 0.1;
 
-/// Warnings about the bonded bodies that no program has made, by name.
-pub(super) fn warnings(
-    scene: &Scene,
-    read: &BTreeMap<String, Body>,
-) -> BTreeMap<String, Vec<String>> {
-    let unseen = read.iter().filter(|(name, body)| {
-        let is_bonded = !body.bonds.is_empty() && !stays_rigid(scene, name);
-        is_bonded && body.about.program.is_none() && body.about.warnings.is_empty()
-    });
-    unseen
-        .map(|(name, body)| (name.clone(), of_body(body)))
-        .collect()
+/// What is said about the quality of the bodies of a scene, a sentence each.
+#[derive(Debug, Default)]
+pub(super) struct Quality {
+    pub(super) warnings: Vec<String>,
+    /// On bodies with few particles across, whose results depend on the particles.
+    pub(super) coarse: Vec<String>,
 }
 
-fn of_body(body: &Body) -> Vec<String> {
+/// The quality of all bodies that can deform or break. `read`: bodies by name.
+pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality {
+    let mut quality = Quality::default();
+    for (name, body) in read {
+        if body.bonds.is_empty() || stays_rigid(scene, name) {
+            continue;
+        }
+        let named = named(scene, name);
+        let about = &body.about;
+        let mut coarse = about.coarse();
+        let by = about.program.as_deref().unwrap_or_default();
+        let by = by.split(' ').next().filter(|by| !by.is_empty());
+        let by = by.unwrap_or("the program that made it");
+        let said = about.warnings.iter();
+        (quality.warnings).extend(said.map(|text| format!("{named}: {by} warned: {text}")));
+        if about.program.is_none() && about.warnings.is_empty() {
+            let seen = faults(body).into_iter();
+            (quality.warnings).extend(seen.map(|text| format!("{named}: {text}")));
+            coarse = coarse.or_else(|| few_across_box(body));
+        }
+        if let Some(coarse) = coarse.filter(|_| !is_calibrated(scene, name, body)) {
+            quality.coarse.push(format!("{named}: {coarse}"));
+        }
+    }
+    quality
+}
+
+/// A body and its file, if it is from one, for a sentence.
+fn named(scene: &Scene, name: &str) -> String {
+    let source = scene.bodies.get(name).map(|entry| &entry.source);
+    match source {
+        Some(BodySource::File(path)) => format!("body '{name}' ({})", path.display()),
+        _ => format!("body '{name}'"),
+    }
+}
+
+/// Whether the bonds of a body were calibrated with spheres of this size.
+fn is_calibrated(scene: &Scene, name: &str, body: &Body) -> bool {
+    let kind = scene
+        .bodies
+        .get(name)
+        .and_then(|entry| entry.bond_kind.as_ref());
+    let kind = kind.and_then(|kind| scene.bonds.get(kind));
+    let mean_m = 2.0 * body.radii.iter().sum::<f64>() / body.radii.len() as f64;
+    kind.and_then(|kind| kind.calibrated_diameter_m)
+        .is_some_and(|calibrated_m| (mean_m / calibrated_m - 1.0).abs() <= SAME_DIAMETER)
+}
+
+/// Warnings about a body that no program has looked at.
+fn faults(body: &Body) -> Vec<String> {
     let count = body.radii.len();
     let mut warnings = Vec::new();
     let mut sets = DisjointSets::new(count);
@@ -55,26 +98,8 @@ fn of_body(body: &Body) -> Vec<String> {
             count - largest
         ));
     }
-    let spheres: Vec<Sphere> = (body.positions.iter().zip(&body.radii))
-        .map(|(place, radius)| Sphere::of_unit_density(*place, *radius))
-        .collect();
-    let [_, width_m, thickness_m] = box_lengths_m(&spheres);
-    let diameter_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
-    // A bar of single spheres is no packing: its bonds are the material.
-    if count < FEWEST || width_m <= CHAIN * diameter_m {
+    if !is_packing(body) {
         return warnings;
-    }
-    let volume = |radius: &f64| radius.powi(3);
-    let cubes: f64 = body.radii.iter().map(volume).sum();
-    let mean_m = 2.0 * body.radii.iter().map(|r| r * volume(r)).sum::<f64>() / cubes;
-    let across = thickness_m / mean_m;
-    if across.round() < ENOUGH_ACROSS {
-        warnings.push(format!(
-            "only about {} particles across the thinnest side of its box ({}): fewer than {ENOUGH_ACROSS} show the particles more than the material; use diameters around {} or less",
-            significant(across, 2),
-            show_length(thickness_m),
-            show_length(thickness_m / ENOUGH_ACROSS),
-        ));
     }
     let bonds = body.bonds.len() as f64 / count as f64;
     if bonds < ENOUGH_BONDS {
@@ -84,4 +109,34 @@ fn of_body(body: &Body) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// Whether the spheres of a body fill a shape: a bar of single spheres is no packing, as its bonds
+/// are the material.
+fn is_packing(body: &Body) -> bool {
+    let [_, width_m, _] = box_m(body);
+    let diameter_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
+    body.radii.len() >= FEWEST && width_m > CHAIN * diameter_m
+}
+
+/// A sentence on a packing with few particles across its box.
+fn few_across_box(body: &Body) -> Option<String> {
+    let [_, _, thickness_m] = box_m(body);
+    let volume = |radius: &f64| radius.powi(3);
+    let cubes: f64 = body.radii.iter().map(volume).sum();
+    let mean_m = 2.0 * body.radii.iter().map(|r| r * volume(r)).sum::<f64>() / cubes;
+    let few = few_across(
+        thickness_m / mean_m,
+        "the thinnest side of its box",
+        thickness_m,
+    );
+    few.filter(|_| is_packing(body))
+}
+
+/// Lengths of the box of a body, descending, m.
+fn box_m(body: &Body) -> [f64; 3] {
+    let spheres: Vec<Sphere> = (body.positions.iter().zip(&body.radii))
+        .map(|(place, radius)| Sphere::of_unit_density(*place, *radius))
+        .collect();
+    box_lengths_m(&spheres)
 }

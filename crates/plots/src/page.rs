@@ -109,18 +109,14 @@ impl Page {
         }
     }
 
-    /// Adds whether the result can be trusted, with the reasons for doubt.
-    pub fn verdict(&mut self, headline: &str, is_sound: bool, warnings: &[String]) {
-        let class = if is_sound {
-            "verdict sound"
-        } else {
-            "verdict doubtful"
-        };
+    /// Adds whether the result can be trusted, in `word` ("sound", "coarse" or "doubtful"), and why.
+    pub fn verdict(&mut self, headline: &str, word: &str, reasons: &[String]) {
+        let class = format!("verdict {word}");
         self.content.push(html! {
             div class=(class) {
                 p { strong { (shown(headline)) } }
-                @if !warnings.is_empty() {
-                    ul { @for warning in warnings { li { (shown(warning)) } } }
+                @if !reasons.is_empty() {
+                    ul { @for reason in reasons { li { (shown(reason)) } } }
                 }
             }
         });

@@ -1,6 +1,7 @@
 //! The sections of the page.
 
 mod inputs;
+mod outlets;
 mod percent;
 mod results;
 mod time;
@@ -10,6 +11,7 @@ use dem_io::text::counted;
 use dem_io::units::show_quantity;
 use dem_plots::Page;
 use dem_results::Summary;
+use dem_results::summary::Trust;
 
 use crate::folder::Folder;
 
@@ -40,13 +42,19 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
         // A run that failed at its start has no verdict.
         warnings.push(problem.clone());
     }
-    let is_sound = summary.verdict.sound;
-    let headline = if is_sound {
-        "Checks passed, no warnings.".to_owned()
-    } else {
-        format!("Doubtful: {}.", counted(warnings.len(), "warning"))
+    let word = summary.verdict.word;
+    let headline = match word {
+        Trust::Sound => "Sound: all checks passed.".to_owned(),
+        Trust::Coarse => {
+            "Coarse: the result is that of these spheres, others would give another.".to_owned()
+        }
+        Trust::Doubtful => format!("Doubtful: {}.", counted(warnings.len(), "warning")),
     };
-    page.verdict(&headline, is_sound, &warnings);
+    let reasons = match word {
+        Trust::Doubtful => warnings,
+        Trust::Coarse | Trust::Sound => summary.verdict.coarse.clone(),
+    };
+    page.verdict(&headline, word.word(), &reasons);
     if !summary.has_results() {
         return;
     }

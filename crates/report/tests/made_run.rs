@@ -100,7 +100,7 @@ pub(crate) fn summary() -> Value {
         "wall_s": 1.5,
         "threads": 2,
         "machine": "a machine, 2 cores",
-        "verdict": {"sound": true, "warnings": []},
+        "verdict": {"word": "sound", "sound": true, "warnings": []},
         "inputs": {
             "seed": 7,
             "set": ["run.end_time=0.02"],

@@ -15,7 +15,7 @@ fn verdict_results_input_and_time_are_there() {
     let page = page_of(&folder, &summary());
     for text in [
         "<title>drop</title>",
-        "Checks passed, no warnings.",
+        "Sound: all checks passed.",
         "20 ms simulated in 1.5 s on 2 threads, ended by end time; dem-run 0.1.0.",
         "height",
         "250 mm",
@@ -40,6 +40,7 @@ fn warnings_come_first_and_without_folders() {
     let folder = folder_with(&MOMENTS);
     let mut summary = summary();
     summary["verdict"] = json!({
+        "word": "doubtful",
         "sound": false,
         "warnings": ["body 'cake' (/home/somebody/mill/cake.vtp): few particles <across>"],
     });
@@ -88,4 +89,20 @@ fn what_is_no_summary_is_refused() {
 fn the_same_folder_gives_the_same_bytes() {
     let folder = folder_with(&MOMENTS);
     assert_eq!(page_of(&folder, &summary()), page_of(&folder, &summary()));
+}
+
+#[test]
+fn a_coarse_run_says_why() {
+    let folder = folder_with(&MOMENTS);
+    let mut summary = summary();
+    summary["verdict"] = json!({
+        "word": "coarse",
+        "sound": false,
+        "warnings": [],
+        "coarse": ["body 'cake': only about 3 particles across"],
+    });
+    let page = page_of(&folder, &summary);
+    assert!(page.contains("class=\"verdict coarse\""));
+    assert!(page.contains("Coarse: the result is that of these spheres"));
+    assert!(page.contains("only about 3 particles across"));
 }

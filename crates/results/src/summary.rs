@@ -7,11 +7,12 @@ mod equilibrium;
 mod inputs;
 mod measured;
 mod parts;
+mod short;
 mod sizes;
 mod text;
 
 pub use balance::{Balance, ENERGIES, Energy, EnergyKind};
-pub use contents::{Summary, Unfinished, Verdict};
+pub use contents::{Summary, Trust, Unfinished, Verdict};
 pub use equilibrium::EquilibriumSummary;
 pub use inputs::{InputBody, InputFile, Inputs};
 pub use measured::Measured;

@@ -62,6 +62,7 @@ pub(super) struct Planned {
     pub(super) masses: BTreeMap<String, BodyMass>,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
+    pub(super) coarse: Vec<String>,
     pub(super) inputs: Inputs,
     /// Change of the time step in a resumed run.
     pub(super) changed_step: Option<String>,
@@ -133,6 +134,7 @@ impl<'a> Run<'a> {
                 stages: plan.stages,
                 masses: plan.masses,
                 notes: plan.notes,
+                coarse: plan.coarse,
                 warnings: plan.warnings,
                 inputs: plan.inputs,
                 changed_step: changed_step.map(|new| new.detail),

@@ -43,7 +43,7 @@ impl Monitors {
         }
         warnings.extend(
             flying
-                .filter(|flying| flying.touches)
+                .filter(|flying| flying.may_break)
                 .map(|flying| flying.text.clone()),
         );
         warnings.extend(self.never_replaced(state, scene, bodies));
@@ -185,7 +185,7 @@ impl Monitors {
         })
     }
 
-    /// The fragments that still move apart at the end: a warning if they touch something, else a
+    /// The fragments that still move apart at the end: a warning if they may break further, else a
     /// note. Not for laboratory tests, nor while an inlet still feeds.
     pub(super) fn flying(
         &self,
@@ -193,10 +193,11 @@ impl Monitors {
         scene: &Scene,
         fragments: &[Fragment],
     ) -> Option<Flying> {
-        if self.last_break_s.is_none() || is_fed(state) || scene.test.is_some() {
+        let last_break_s = self.last_break_s?;
+        if is_fed(state) || scene.test.is_some() {
             return None;
         }
-        still_flying(state, fragments, self.largest_kinetic_j)
+        still_flying(state, fragments, self.largest_kinetic_j, last_break_s)
     }
 }
 

@@ -77,7 +77,7 @@ impl Run<'_> {
             ));
         }
         let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
-        let note = flying.filter(|flying| !flying.touches);
+        let note = flying.filter(|flying| !flying.may_break);
         summary.notes.extend(note.map(|flying| flying.text));
         summary.notes.extend(parted_without_contacts(&self.state));
         if !is_stopped {
@@ -87,7 +87,7 @@ impl Run<'_> {
         }
         let outputs = self.outputs.iter();
         (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));
-        summary.judge(warnings);
+        summary.judge(warnings, std::mem::take(&mut self.planned.coarse));
         match folder {
             None => {}
             // Of what has been simulated; its film goes on with the run.

@@ -8,7 +8,7 @@ use super::plain_table::plain_table;
 use super::schema::{Kind, Word, table_schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::{STRESS, VISCOUS_DAMPING};
+use dem_io::units::{LENGTH, STRESS, VISCOUS_DAMPING};
 use dem_physics::bond::flat_joint::{FlatJointLaw, moment_ratio};
 use dem_physics::bond::stiffness::BondModel;
 use std::ops::Bound::{Excluded, Included};
@@ -46,6 +46,8 @@ pub struct BondKind {
     pub plasticity: Option<BondPlasticity>,
     /// `contact_beside_bond`: the contact law of the two ends acts beside the bond.
     pub contact_beside_bond: bool,
+    /// `calibrated_diameter`: mean diameter of the spheres that these bonds were calibrated with, m.
+    pub calibrated_diameter_m: Option<f64>,
 }
 
 table_schema! {
@@ -89,6 +91,9 @@ table_schema! {
     /// The contact law of the two materials acts beside the bond, from the overlap at which the
     /// ends were bonded.
     flag("contact_beside_bond", false);
+    /// Mean diameter of the spheres with which these bonds were calibrated; `dem-run calibrate`
+    /// writes it. The verdict does not call bodies of such spheres coarse.
+    quantity("calibrated_diameter", &LENGTH).positive().otherwise("not calibrated");
 }
 
 plain_table! {
@@ -172,6 +177,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
             .unwrap_or_default(),
         plasticity: table.read_by("plasticity", |field| plasticity(&field))?,
         contact_beside_bond: table.read("contact_beside_bond")?,
+        calibrated_diameter_m: table.read("calibrated_diameter")?,
     };
     conflicts::BOND.refuse_key("plasticity", &table)?;
     match kind.model {
@@ -363,4 +369,5 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
         });
     }
     listing.value("contact_beside_bond", &kind.contact_beside_bond);
+    listing.value("calibrated_diameter", &kind.calibrated_diameter_m);
 }

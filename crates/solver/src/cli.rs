@@ -6,6 +6,7 @@ mod as_run;
 mod body;
 mod calibrate;
 mod check;
+mod check_form;
 mod export;
 mod export_frames;
 mod export_walls;
@@ -87,8 +88,12 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt, tell: Tell<'_>) -> Resu
         Some(Command::Check {
             scene,
             picture,
+            verbose,
             quiet,
-        }) => check::check_scene(scene, picture.as_deref(), *quiet),
+        }) => {
+            let form = check_form::Form::of(scene.json, *verbose, *quiet);
+            check::check_scene(scene, picture.as_deref(), form)
+        }
         Some(Command::New(arguments)) => new::new(arguments),
         Some(Command::Keys(arguments)) => keys::keys(arguments),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),

@@ -64,7 +64,7 @@ fn done(study: &Study, summary: &Summary, results: &Path) -> Result<Done, String
         steps: summary.steps,
         time_step_s: summary.time_step_s,
         machine: summary.machine.clone(),
-        doubts: summary.verdict.warnings.clone(),
+        verdict: summary.verdict.clone(),
         report: None,
         readings,
     })

@@ -1,5 +1,7 @@
 //! Outcomes of the processes of a sweep.
 
+use dem_results::summary::Verdict;
+
 /// The result of one process.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Done {
@@ -11,8 +13,8 @@ pub struct Done {
     pub time_step_s: f64,
     /// Processor and cores.
     pub machine: String,
-    /// The warnings of its verdict; none: it is sound.
-    pub doubts: Vec<String>,
+    /// Its verdict.
+    pub verdict: Verdict,
     /// Its page, relative to the folder of the sweep; None: it has none.
     pub report: Option<String>,
     /// One for each measure of the study.

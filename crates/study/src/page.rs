@@ -9,7 +9,7 @@ use super::response_page;
 use super::row::{Judged, Row};
 use super::sweep_table::SweepTable;
 use super::text::front_of;
-use super::words::{number, with_unit};
+use super::words::{in_words, number, with_unit};
 
 /// Largest number of runs in the table; the CSV has all of them.
 const MOST_ROWS: usize = 2000;
@@ -70,7 +70,10 @@ fn subject(table: &SweepTable) -> &'static str {
 }
 
 fn of_axes(table: &SweepTable) -> impl Iterator<Item = Column> {
-    table.axes.iter().map(|axis| Column::text(&axis.name))
+    table
+        .axes
+        .iter()
+        .map(|axis| Column::text(&in_words(&axis.name)))
 }
 
 fn add_front(page: &mut Page, table: &SweepTable, measure: usize) {
@@ -155,7 +158,10 @@ fn add_all(page: &mut Page, table: &SweepTable) {
     columns.extend(of_axes(table));
     columns.extend(["time (s)", "scatter (s)", "steps"].map(Column::number));
     for measure in &table.measures {
-        columns.push(Column::number(&with_unit(&measure.name, &measure.unit)));
+        columns.push(Column::number(&with_unit(
+            &in_words(&measure.name),
+            &measure.unit,
+        )));
         columns.extend(measure.reference.as_ref().map(|_| Column::number("error")));
     }
     columns.push(Column::text("verdict"));

@@ -6,6 +6,7 @@ use dem_plots::{Axis, Marks, Plot, Point};
 
 use super::row::Row;
 use super::sweep_table::SweepTable;
+use super::words::in_words;
 
 /// A run in the plot.
 struct Mark<'a> {
@@ -47,7 +48,7 @@ pub fn plot(table: &SweepTable, measure: usize) -> Plot {
         marks: (0..axis.map_or(1, |axis| axis.values.len()))
             .map(of_series)
             .collect(),
-        kinds: axis.map_or(String::new(), |axis| axis.name.clone()),
+        kinds: axis.map_or(String::new(), |axis| in_words(&axis.name)),
         filled: (!marks.is_empty()).then(|| meaning.map(str::to_owned)),
         front: front(&marks),
         if_empty: "no run has an error that is known".to_owned(),

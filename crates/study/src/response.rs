@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::expand::Run;
 use super::median::median;
-use super::row::{DOUBTFUL, Row};
+use super::row::Row;
 
 /// The values of a measure without a reference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -92,8 +92,8 @@ impl ResponsePoint {
     pub(crate) fn verdict_text(&self) -> String {
         match (self.doubtful, self.values.len()) {
             (0, _) => String::new(),
-            (_, 1) => format!(" {DOUBTFUL}"),
-            (doubtful, _) => format!(" {doubtful} {DOUBTFUL}"),
+            (_, 1) => " doubtful".to_owned(),
+            (doubtful, _) => format!(" {doubtful} doubtful"),
         }
     }
 

@@ -6,7 +6,7 @@ use dem_scene::study::Average;
 use super::response::Response;
 use super::response_plot::{average, found_plots, plots, shown_axes};
 use super::sweep_table::SweepTable;
-use super::words::{number, with_unit};
+use super::words::{in_words, number, with_unit};
 
 /// Largest number of points in a table; the CSV has all of them.
 const MOST_POINTS: usize = 500;
@@ -30,14 +30,16 @@ pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
         search.shown(search.tolerance),
         search.statistic.word()
     ));
-    let parameter = with_unit(&search.parameter, &search.unit);
+    let parameter = with_unit(&in_words(&search.parameter), &search.unit);
     let name = match search.statistic {
-        Average::Mean => measure.name.clone(),
-        Average::Median => format!("median of {}", measure.name),
+        Average::Mean => in_words(&measure.name),
+        Average::Median => format!("median of {}", in_words(&measure.name)),
     };
     let value = with_unit(&name, &measure.unit);
     let axes: Vec<usize> = shown_axes(table).filter(|at| *at > 0).collect();
-    let columns = axes.iter().map(|at| Column::text(&table.axes[*at].name));
+    let columns = axes
+        .iter()
+        .map(|at| Column::text(&in_words(&table.axes[*at].name)));
     let columns = columns.chain([&parameter, &value].map(|name| Column::number(name)));
     let rows = search.cases.iter().flat_map(|case| {
         let settings = axes
@@ -69,7 +71,7 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
         page.paragraph(&format!(
             "{averages} over {} values of {}; {scatter}.",
             averaged.values.len(),
-            averaged.name
+            in_words(&averaged.name)
         ));
     }
     for plot in plots(table, response) {
@@ -78,7 +80,7 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
     let measure = &table.measures[response.measure];
     let axes: Vec<usize> = shown_axes(table).collect();
     let mut columns: Vec<Column> = (axes.iter())
-        .map(|at| Column::text(&table.axes[*at].name))
+        .map(|at| Column::text(&in_words(&table.axes[*at].name)))
         .collect();
     let shown = average(table, response);
     if averaged.is_some() {
@@ -95,7 +97,10 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
         };
         columns.extend(scatter.map(Column::number));
     } else {
-        columns.push(Column::number(&with_unit(&measure.name, &measure.unit)));
+        columns.push(Column::number(&with_unit(
+            &in_words(&measure.name),
+            &measure.unit,
+        )));
     }
     let rows = response.points.iter().take(MOST_POINTS).map(|point| {
         let mut cells: Vec<String> = axes.iter().map(|at| point.settings[*at].clone()).collect();

@@ -7,10 +7,9 @@ use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_scene::study::Average;
 
 use super::response::{Response, ResponsePoint};
-use super::row::DOUBTFUL;
 use super::search::{Search, SearchCase, SearchResult};
 use super::sweep_table::{AxisColumn, SweepTable};
-use super::words::with_unit;
+use super::words::{in_words, with_unit};
 
 /// A logarithmic axis is used from this ratio of the largest to the smallest value on.
 const LOG_FROM: f64 = 30.0;
@@ -57,9 +56,9 @@ fn found_plot(table: &SweepTable, search: &Search, over: usize) -> Plot {
     Plot {
         title: format!("where {measure} is {}", search.value_as_written),
         x: horizontal(axis),
-        y: Axis::of(&with_unit(&search.parameter, &search.unit)),
+        y: Axis::of(&with_unit(&in_words(&search.parameter), &search.unit)),
         marks: (0..kinds).map(marks).collect(),
-        kinds: series.map_or(String::new(), |at| table.axes[at].name.clone()),
+        kinds: series.map_or(String::new(), |at| in_words(&table.axes[at].name)),
         if_empty: "no value was found".to_owned(),
         ..Plot::default()
     }
@@ -123,9 +122,9 @@ fn plot(table: &SweepTable, response: &Response, over: usize) -> Plot {
         x: horizontal(axis),
         y: Axis::of(&with_unit(&name, &measure.unit)),
         marks: (0..kinds).map(marks).collect(),
-        kinds: series.map_or(String::new(), |at| table.axes[at].name.clone()),
+        kinds: series.map_or(String::new(), |at| in_words(&table.axes[at].name)),
         filled: (response.points.iter().any(|point| point.doubtful > 0))
-            .then(|| ["sound", DOUBTFUL].map(str::to_owned)),
+            .then(|| ["sound or coarse", "doubtful"].map(str::to_owned)),
         reference: wanted.clone(),
         if_empty: "no run has a value".to_owned(),
         ..Plot::default()
@@ -143,7 +142,7 @@ fn title(table: &SweepTable, response: &Response, name: &str) -> String {
             format!(
                 "{name}: {} and {scatter} over {}",
                 average.word(),
-                table.axes[*averaged].name
+                in_words(&table.axes[*averaged].name)
             )
         }
         _ => name.to_owned(),
@@ -203,9 +202,9 @@ fn series(table: &SweepTable, over: usize) -> Option<usize> {
 
 fn horizontal(axis: &AxisColumn) -> Axis {
     let Some(numbers) = &axis.numbers else {
-        return Axis::named(&axis.name, axis.values.clone());
+        return Axis::named(&in_words(&axis.name), axis.values.clone());
     };
-    let label = with_unit(&axis.name, &axis.unit);
+    let label = with_unit(&in_words(&axis.name), &axis.unit);
     let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
     let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if low > 0.0 && high >= LOG_FROM * low {

@@ -1,10 +1,8 @@
 //! One run in the table of a sweep.
 
+use dem_results::summary::Trust;
 use dem_scene::study::Study;
 use serde::Serialize;
-
-/// Verdict of a run whose results are doubtful.
-pub(crate) const DOUBTFUL: &str = "doubtful";
 
 /// One run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,7 +15,9 @@ pub struct Row {
     pub settings: Vec<String>,
     /// The reason why it has no values. None if it has values.
     pub failed: Option<String>,
-    /// The warnings of its verdict; empty if it is sound, or has no values.
+    /// Its verdict in one word. None if it has no values.
+    pub trust: Option<Trust>,
+    /// The warnings of its verdict: none unless it is doubtful.
     pub doubts: Vec<String>,
     /// Time of each repeat, s.
     pub times_s: Vec<f64>,
@@ -37,13 +37,9 @@ pub struct Row {
 }
 
 impl Row {
-    /// Its verdict: `sound` or `doubtful`; empty for a failed run.
+    /// Its verdict in one word; empty for a failed run.
     pub fn verdict(&self) -> &'static str {
-        match (&self.failed, self.doubts.is_empty()) {
-            (Some(_), _) => "",
-            (None, true) => "sound",
-            (None, false) => DOUBTFUL,
-        }
+        self.trust.map_or("", Trust::word)
     }
 
     /// The size of its value on an axis: its time step itself if the axis is the relative one, as a

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use dem_results::summary::{Trust, Verdict};
 use dem_scene::study::{Axis, RunTime, Study};
 
 use super::chance;
@@ -45,7 +46,7 @@ impl SweepTable {
         for (measure, value) in values.iter().enumerate() {
             judge(study, runs, &firsts, measure, *value, &mut rows, &mut notes);
         }
-        notes.extend(doubtful(runs, &firsts));
+        notes.extend(not_sound(runs, &firsts));
         notes.extend(compare_times(study, machines.len(), &mut rows));
         if study.repeats() == 1 && study.has_errors() {
             notes.push("each run was done once: how far run times scatter is not known".to_owned());
@@ -214,7 +215,8 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
         choice: run.choice.clone(),
         settings: run.labels(study),
         failed,
-        doubts: first.map_or(Vec::new(), |done| done.doubts.clone()),
+        trust: first.map(|done| done.verdict.word),
+        doubts: first.map_or(Vec::new(), |done| done.verdict.warnings.clone()),
         time_s,
         spread_s: time_s.map(|time| range_of_median(&rising_s).max(LEAST_SPREAD * time)),
         times_s,
@@ -270,33 +272,42 @@ fn mark_front(rows: &mut [Row], measure: usize) {
     }
 }
 
-/// Sentences on the runs whose verdict is doubtful, if there are any: their number, and each kind
-/// of warning once, with the number of its runs.
-fn doubtful(runs: &[Run], of_runs: &[Option<&Done>]) -> Vec<String> {
+/// Sentences on the runs that are not sound, if there are any: for each verdict their number, and
+/// each kind of reason once, with the number of its runs.
+fn not_sound(runs: &[Run], of_runs: &[Option<&Done>]) -> Vec<String> {
     let done = runs.iter().zip(of_runs);
-    let done = done.filter_map(|(run, done)| Some((run.number, done.as_ref()?)));
-    let (mut all, mut doubtful) = (0, 0);
-    // Key of a kind, the number of its runs, and the first of them with its warning.
-    let mut kinds: Vec<(String, usize, usize, &str)> = Vec::new();
-    for (number, done) in done {
-        all += 1;
-        doubtful += usize::from(!done.doubts.is_empty());
-        for warning in &done.doubts {
-            let key = kind_of(warning);
-            match kinds.iter_mut().find(|kind| kind.0 == key) {
-                Some(kind) => kind.1 += 1,
-                None => kinds.push((key, 1, number, warning)),
+    let done: Vec<(usize, &Verdict)> = done
+        .filter_map(|(run, done)| Some((run.number, &done.as_ref()?.verdict)))
+        .collect();
+    let of_word = |word: Trust| {
+        let with_word = || done.iter().filter(move |(_, verdict)| verdict.word == word);
+        let count = with_word().count();
+        // Key of a kind, the number of its runs, and the first of them with its reason.
+        let mut kinds: Vec<(String, usize, usize, &str)> = Vec::new();
+        for (number, verdict) in with_word() {
+            for reason in verdict.reasons() {
+                let key = kind_of(reason);
+                match kinds.iter_mut().find(|kind| kind.0 == key) {
+                    Some(kind) => kind.1 += 1,
+                    None => kinds.push((key, 1, *number, reason)),
+                }
             }
         }
-    }
-    if doubtful == 0 {
-        return Vec::new();
-    }
-    let told = kinds.iter().map(|(_, count, number, warning)| {
-        format!("in {count} of them, first in run {number}: {warning}")
-    });
-    let first = format!("{doubtful} of {all} runs are doubtful (verdict in their summary.json)");
-    std::iter::once(first).chain(told).collect()
+        let told = kinds.into_iter().map(|(_, count, number, reason)| {
+            format!("in {count} of them, first in run {number}: {reason}")
+        });
+        let all = done.len();
+        let first = format!(
+            "{count} of {all} runs are {} (verdict in their summary.json)",
+            word.word()
+        );
+        let told: Vec<String> = std::iter::once(first).chain(told).collect();
+        if count == 0 { Vec::new() } else { told }
+    };
+    [Trust::Doubtful, Trust::Coarse]
+        .into_iter()
+        .flat_map(of_word)
+        .collect()
 }
 
 /// The first words of a warning that contain no digit: the same for all runs with such a warning.

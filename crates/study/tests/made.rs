@@ -1,5 +1,6 @@
 //! Studies, and tables of made outcomes.
 
+use dem_results::summary::Verdict;
 use dem_scene::study::{Reference, Study, study_from_text};
 use dem_study::expand::{Run, runs};
 use dem_study::outcome::{Done, Outcome, Reading};
@@ -28,7 +29,7 @@ pub(crate) fn done(time_s: f64, values: &[f64]) -> Done {
         steps: 100,
         time_step_s: 1e-6,
         machine: "a machine, 2 cores".to_owned(),
-        doubts: Vec::new(),
+        verdict: Verdict::new(Vec::new(), Vec::new()),
         report: None,
         readings: values.iter().copied().map(reading).collect(),
     }

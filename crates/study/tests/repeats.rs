@@ -1,5 +1,6 @@
 //! Rows of runs with several repeats: run times and their spread, failures, doubts.
 
+use dem_results::summary::Verdict;
 use dem_study::outcome::{Done, Outcome};
 use dem_study::row::Row;
 use dem_study::sweep_table::SweepTable;
@@ -108,7 +109,7 @@ fn doubtful_runs_are_counted() {
                 .to_vec(),
         };
         Done {
-            doubts,
+            verdict: Verdict::new(doubts, Vec::new()),
             ..done(1.0, &[1.0])
         }
     });

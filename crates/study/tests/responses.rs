@@ -1,5 +1,6 @@
 //! Responses: mean, median and scatter over the seeds.
 
+use dem_results::summary::Verdict;
 use dem_study::outcome::{Done, Outcome};
 use dem_study::response::ResponsePoint;
 use dem_study::sweep_table::SweepTable;
@@ -58,7 +59,7 @@ fn a_response_counts_only_the_runs_with_values() {
         vec![match run.choice.as_slice() {
             [0, 1] => Outcome::Failed("it burst".to_owned()),
             [0, 2] => Outcome::Done(Done {
-                doubts: vec!["the energy error is large".to_owned()],
+                verdict: Verdict::new(vec!["the energy error is large".to_owned()], Vec::new()),
                 ..found
             }),
             [0, _] => Outcome::Done(found),

@@ -226,9 +226,9 @@ impl Islands {
         let floors_j = if any_new { floors_j(self) } else { Vec::new() };
         for (name, now) in (0..).zip(sums) {
             if now.key == 0 {
-                // All asleep, without the energy that they had: they will begin anew.
-                if let Some(book) = self.books.get_mut(&name) {
-                    book.key = 0;
+                // All asleep: the energy that they had is in no sum.
+                if let Some(book) = self.books.get_mut(&name).filter(|book| book.key != 0) {
+                    book.begin_anew(&now);
                 }
                 continue;
             }
@@ -260,20 +260,31 @@ impl Islands {
     }
 }
 
+impl IslandSums {
+    /// Its energy, with its losses and without the work on it, J.
+    fn own_j(&self) -> f64 {
+        self.held_j + self.attraction_j + self.height_j + self.lost_j - self.work_j
+    }
+}
+
 impl IslandBook {
+    /// Begins anew with other particles. What came and went brought and took energy: the error
+    /// until now stays.
+    fn begin_anew(&mut self, now: &IslandSums) {
+        self.key = now.key;
+        if self.loses_more {
+            self.error_j = self.error_j.max(0.0);
+        }
+        self.opening_j = now.own_j() - self.error_j;
+        self.opening_height_j = now.height_j;
+    }
+
     /// Notes the energy at a look.
     fn note(&mut self, now: IslandSums, floor_j: f64) {
-        let own_j = now.held_j + now.attraction_j + now.height_j + now.lost_j - now.work_j;
         if now.key == self.key {
-            self.error_j = own_j - self.opening_j;
+            self.error_j = now.own_j() - self.opening_j;
         } else {
-            // What came and went brought and took energy: the error until now stays.
-            self.key = now.key;
-            if self.loses_more {
-                self.error_j = self.error_j.max(0.0);
-            }
-            self.opening_j = own_j - self.error_j;
-            self.opening_height_j = now.height_j;
+            self.begin_anew(&now);
         }
         self.loses_more = now.loses_more;
         let fallen_j = (now.height_j - self.opening_height_j).abs();

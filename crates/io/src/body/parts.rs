@@ -24,6 +24,10 @@ pub struct About {
     pub bond_range: Option<f64>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
+    /// Thickness of its thinnest part, m.
+    pub thinnest_part_m: Option<f64>,
+    /// The same in mean diameters of its particles.
+    pub particles_across: Option<f64>,
     /// Warnings of the program that made it, one sentence each.
     pub warnings: Vec<String>,
 }

@@ -191,6 +191,9 @@ impl fmt::Display for BodySummary {
         if !made.is_empty() {
             writeln!(f, "made       {}", made.join(", "))?;
         }
+        if let Some(coarse) = about.coarse() {
+            writeln!(f, "coarse     {coarse}")?;
+        }
         for warning in &about.warnings {
             writeln!(f, "warning    when it was made: {warning}")?;
         }

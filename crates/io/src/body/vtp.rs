@@ -19,8 +19,8 @@ pub(crate) use stored::{read_frame, read_particles, read_walls};
 use std::io::{self, Write};
 
 use names::{
-    BOND_RANGE, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, SEED, SHAPE_VOLUME, SOURCE,
-    SOURCE_HASH, VERSION, WARNINGS,
+    BOND_RANGE, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PARTICLES_ACROSS, PROGRAM, SEED,
+    SHAPE_VOLUME, SOURCE, SOURCE_HASH, THINNEST_PART, VERSION, WARNINGS,
 };
 
 use super::histories::{BondColumn, DIRECTION};
@@ -95,5 +95,9 @@ fn write_fields(about: &About, out: &mut dyn Write) -> io::Result<()> {
     write_number(out, "Float64", OVERLAP, about.overlap.map(exact))?;
     write_number(out, "Float64", BOND_RANGE, about.bond_range.map(exact))?;
     write_number(out, "UInt64", SEED, about.seed)?;
+    let thinnest_m = about.thinnest_part_m.map(exact);
+    write_number(out, "Float64", THINNEST_PART, thinnest_m)?;
+    let across = about.particles_across.map(exact);
+    write_number(out, "Float64", PARTICLES_ACROSS, across)?;
     write_texts(out, WARNINGS, &about.warnings)
 }

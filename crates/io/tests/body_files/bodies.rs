@@ -25,7 +25,9 @@ pub(crate) fn triangle() -> Body {
             overlap: Some(0.25),
             bond_range: Some(1.1),
             seed: Some(7),
-            warnings: vec!["few – 4.9 – across".to_owned(), "2 pieces".to_owned()],
+            thinnest_part_m: Some(0.1),
+            particles_across: Some(4.9),
+            warnings: vec!["few – 4.9 – bonds".to_owned(), "2 pieces".to_owned()],
         },
     }
 }
@@ -120,6 +122,8 @@ fn any_about() -> impl Strategy<Value = About> {
         of(0.0..1.0),
         positive(),
         of(any::<u64>()),
+        positive(),
+        positive(),
         prop::collection::vec("[^\\x00-\\x1f\\x7f-\\x9f]{1,12}", 0..3),
     )
         .prop_map(
@@ -132,6 +136,8 @@ fn any_about() -> impl Strategy<Value = About> {
                 overlap,
                 bond_range,
                 seed,
+                thinnest_part_m,
+                particles_across,
                 warnings,
             )| {
                 About {
@@ -143,6 +149,8 @@ fn any_about() -> impl Strategy<Value = About> {
                     overlap,
                     bond_range,
                     seed,
+                    thinnest_part_m,
+                    particles_across,
                     warnings,
                 }
             },

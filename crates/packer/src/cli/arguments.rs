@@ -217,6 +217,9 @@ pub(super) struct PackArguments {
     /// Print the report as JSON on standard output (the body then needs --output)
     #[arg(long, requires = "output", help_heading = "Running")]
     pub(super) json: bool,
+    /// Print the whole report
+    #[arg(short, long, help_heading = "Running", conflicts_with_all = ["json", "quiet"])]
+    pub(super) verbose: bool,
     /// Only print errors: no progress, and no report, which is not computed; --json is still
     /// printed
     #[arg(short, long, help_heading = "Running")]

@@ -45,7 +45,7 @@ pub(super) fn surface_text(surface: &Surface) -> String {
 }
 
 /// The mass of the body compared with that of its filled shape, and its centre of mass.
-fn mass_text(made: &BodyReport) -> String {
+fn mass_lines(made: &BodyReport) -> [String; 2] {
     let [mass, centre] = match &made.mass {
         Some(mass) => mass.lines(),
         None => [
@@ -56,8 +56,7 @@ fn mass_text(made: &BodyReport) -> String {
             format!("centre {}", made.centre_m.map(show_length).join(", ")),
         ],
     };
-    let centre = centre.trim_start_matches("centre ");
-    format!("mass             {mass}\ncentre           {centre}\n")
+    [mass, centre.trim_start_matches("centre ").to_owned()]
 }
 
 fn packed_by(history: &PackHistory) -> String {
@@ -72,20 +71,79 @@ fn packed_by(history: &PackHistory) -> String {
     format!("spheres scattered at random, largest first, since {front} left too much room")
 }
 
-/// The summary of a new body: its quality, warnings, and times.
-pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
-    let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
+/// The report on a new body in a few lines: its spheres, bonds and mass, and the verdict.
+pub(super) fn short_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
+    let quality = &made.quality;
+    let filled = 100.0 * quality.union_density.value;
+    let across = quality.thinnest.map_or(String::new(), |thinnest| {
+        format!(
+            ", {} spheres across the thinnest part ({})",
+            significant(thinnest.particles_across, 2),
+            show_length(thinnest.thickness_m)
+        )
+    });
+    let mass = made.mass.as_ref().map(|_| mass_lines(made)[0].clone());
+    let mut text = first_line(surface, output);
+    for (name, what) in [
+        (
+            "particles",
+            Some(format!(
+                "{} spheres, mean diameter {}, {} bonds ({} per sphere)",
+                quality.particles,
+                show_length(quality.mean_diameter_m),
+                quality.bonds,
+                significant(quality.bonds_per_particle, 3)
+            )),
+        ),
+        (
+            "filled",
+            Some(format!("{filled:.0} % of the shape{across}")),
+        ),
+        ("mass", mass),
+    ] {
+        if let Some(what) = what {
+            text += &format!("{name:10} {what}\n");
+        }
+    }
+    text + &verdict_lines(surface, made, 10)
+}
+
+fn first_line(surface: &Surface, output: &Path) -> String {
     let name = if output == Path::new("-") {
         "standard output".to_owned()
     } else {
         output.display().to_string()
     };
-    let mut text = format!(
-        "{} -> {}\n{}",
-        visible(&surface.source),
-        visible(&name),
-        made.quality.text()
-    );
+    format!("{} -> {}\n", visible(&surface.source), visible(&name))
+}
+
+/// Notes, warnings, and the verdict in one of three words: sound, coarse or doubtful.
+fn verdict_lines(surface: &Surface, made: &BodyReport, width: usize) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, what: &str| text += &format!("{name:width$} {what}\n");
+    for note in surface.warnings.iter().chain(&made.notes) {
+        line("note", note);
+    }
+    let quality = &made.quality;
+    for warning in &quality.warnings {
+        line("warning", warning);
+    }
+    let verdict = match (quality.warnings.len(), &quality.coarse) {
+        (0, None) => "sound".to_owned(),
+        (0, Some(coarse)) => format!("coarse: {coarse}"),
+        (1, _) => "doubtful: resolve the warning above before using the body".to_owned(),
+        (many, _) => {
+            format!("doubtful: resolve the {many} warnings above before using the body")
+        }
+    };
+    line("verdict", &verdict);
+    text
+}
+
+/// The whole report on a new body: its quality, warnings, and times.
+pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
+    let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
+    let mut text = first_line(surface, output) + &made.quality.text();
     if let Some(search) = &made.density_search {
         text += &format!(
             "density search   target {} kg/m3, found {} kg/m3 ({:+.2} %) at overlap {}; packings made: {}, fronts: {}\n",
@@ -97,7 +155,8 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
             search.packings
         );
     }
-    text += &mass_text(made);
+    let [mass, centre] = mass_lines(made);
+    text += &format!("mass             {mass}\ncentre           {centre}\n");
     let history = &made.history;
     text += &format!(
         "packed by        {}; {} left out (too many), {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
@@ -121,18 +180,5 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
         made.seconds.report,
         significant(made.quality.particles as f64 / seconds, 3)
     );
-    for warning in surface.warnings.iter().chain(&made.notes) {
-        text += &format!("note             {warning}\n");
-    }
-    text += &match made.quality.warnings.len() {
-        0 => "verdict          sound: no warnings\n".to_owned(),
-        1 => "verdict          doubtful: resolve the warning above before using the body\n"
-            .to_owned(),
-        many => {
-            format!(
-                "verdict          doubtful: resolve the {many} warnings above before using the body\n"
-            )
-        }
-    };
-    text
+    text + &verdict_lines(surface, made, 16)
 }

@@ -59,6 +59,8 @@ pub struct Report {
     pub interior_fabric: Option<Fabric>,
     /// The thinnest part of the body. None without particles.
     pub thinnest: Option<Thinnest>,
+    /// A sentence on few particles across, which make a body coarse.
+    pub coarse: Option<String>,
     /// Warnings with advice, one sentence each.
     pub warnings: Vec<String>,
 }

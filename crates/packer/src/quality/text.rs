@@ -15,7 +15,7 @@ const MOST_NOISE: f64 = 0.05;
 type Line = (&'static str, String);
 
 impl Report {
-    /// The human-readable report: about twenty aligned lines, one subject each, and the warnings.
+    /// The human-readable report: about twenty aligned lines, one subject each.
     pub fn text(&self) -> String {
         let lines: Vec<Line> = density_lines(self)
             .into_iter()
@@ -28,14 +28,8 @@ impl Report {
             .chain(structure_lines(self))
             .collect();
         let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-        let mut text: String = lines
-            .iter()
-            .map(|(name, what)| format!("{name:width$}  {what}\n"))
-            .collect();
-        for warning in &self.warnings {
-            text.push_str(&format!("warning: {warning}\n"));
-        }
-        text
+        let line = |(name, what): &Line| format!("{name:width$}  {what}\n");
+        lines.iter().map(line).collect()
     }
 }
 

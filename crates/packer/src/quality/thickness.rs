@@ -14,6 +14,7 @@
 
 use super::bonded_packing::{BondedPacking, CAP_IN_MEAN_DIAMETERS};
 use super::depth::{DepthProbe, DepthQuery};
+use dem_io::body::few_across;
 use dem_io::disjoint::DisjointSets;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,13 @@ pub struct Thinnest {
     pub particles_across: f64,
     /// True if it is thicker than could be measured: the two numbers are lower limits.
     pub at_least: bool,
+}
+
+impl Thinnest {
+    /// A sentence on few particles across. None: there are enough.
+    pub fn few(&self) -> Option<String> {
+        few_across(self.particles_across, "the thinnest part", self.thickness_m)
+    }
 }
 
 /// The thinnest part, as described above. None without particles.

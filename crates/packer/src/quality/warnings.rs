@@ -3,10 +3,8 @@
 use super::checks::{Checks, ENOUGH_BONDS};
 use super::pieces::Pieces;
 use crate::bonds::WELL_BONDED;
-use dem_io::units::{show_length, significant};
+use dem_io::units::significant;
 
-/// Number of particles across below which a body shows its particles more than its material.
-const ENOUGH_ACROSS: f64 = 10.0;
 /// Overlaps (in r_gen) and protrusions above this fraction of a radius are not rounding errors.
 const EXACT: f64 = 1e-9;
 /// Sizes are reported as wrong beyond this multiple of the statistical limit: chance alone exceeds
@@ -28,19 +26,6 @@ pub(super) fn warnings(checks: &Checks, parts: usize) -> Vec<String> {
         warnings.push(format!(
             "spheres stand out of the surface by up to {} of a radius: please report the command",
             significant(contacts.largest_protrusion, 2)
-        ));
-    }
-    if let Some(thinnest) = checks
-        .thinnest
-        .as_ref()
-        .filter(|t| t.particles_across.round() < ENOUGH_ACROSS)
-    {
-        warnings.push(format!(
-            "only about {} particles across the thinnest part ({}): fewer than {ENOUGH_ACROSS} show the particles more than the \
-             material; use diameters around {} or less",
-            significant(thinnest.particles_across, 2),
-            show_length(thinnest.thickness_m),
-            show_length(significant_down(thinnest.thickness_m / ENOUGH_ACROSS)),
         ));
     }
     warnings.extend(pieces_warning(&checks.pieces, parts, checks.particles));
@@ -103,13 +88,4 @@ fn statistical_warnings(checks: &Checks) -> Vec<String> {
         ));
     }
     warnings
-}
-
-/// Rounded down to two digits.
-fn significant_down(value: f64) -> f64 {
-    if value <= 0.0 {
-        return 0.0;
-    }
-    let step = 10.0_f64.powf(value.log10().floor() - 1.0);
-    (value / step * (1.0 + 1e-12)).floor() * step
 }

@@ -67,6 +67,7 @@ fn the_density_is_printed() {
             "2050",
             "--solid-density",
             "1650",
+            "--verbose",
             "-o",
             "body.vtp",
         ],

@@ -393,7 +393,8 @@ fn remnants_of_a_killed_run_go_with_the_next() {
 #[test]
 fn warnings_are_kept_with_the_body() {
     let bench = Bench::new();
-    let made = bench.pack(&shape("02"), &["-d", "3mm"]);
+    let few_bonds = ["-d", "3mm", "--overlap", "0", "--bond-range", "1.01"];
+    let made = bench.pack(&shape("02"), &few_bonds);
     let warned = made.report["quality"]["warnings"].as_array().unwrap();
     assert!(!warned.is_empty());
     let kept: Vec<&str> = warned.iter().map(|text| text.as_str().unwrap()).collect();
@@ -404,6 +405,8 @@ fn warnings_are_kept_with_the_body() {
         .output()
         .unwrap();
     let info = String::from_utf8(info.stdout).unwrap();
+    let coarse = made.body.about.coarse().unwrap();
+    assert!(info.contains(&format!("coarse     {coarse}\n")), "{info}");
     for text in kept {
         assert!(
             info.contains(&format!("warning    when it was made: {text}\n")),

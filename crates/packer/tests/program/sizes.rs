@@ -237,7 +237,7 @@ fn a_curve_that_does_not_reach_from_0_to_100_has_a_note() {
     };
     let cut = said("opening_mm,passing_percent\n1.6,3\n2.0,15\n2.5,60\n3.15,96\n");
     assert!(
-        cut.contains("note             The sieve curve leaves the 3 % below 1.6 mm and the 4 % above 3.15 mm by mass without sizes"),
+        cut.contains("note       The sieve curve leaves the 3 % below 1.6 mm and the 4 % above 3.15 mm by mass without sizes"),
         "{cut}"
     );
     let one = said("opening_mm,passing_percent\n1.6,0\n2.0,15\n2.5,60\n3.15,96\n");

@@ -43,12 +43,8 @@ fn a_line_has_one_direction() {
         (thinnest.particles_across - 1.0).abs() < 1e-9,
         "{thinnest:?}"
     );
-    assert!(
-        report
-            .warnings
-            .iter()
-            .any(|w| w.contains("only about 1 particles across"))
-    );
+    let coarse = report.coarse.unwrap();
+    assert!(coarse.contains("only about 1 particles across"), "{coarse}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use dem_plots::{Column, Page, Table};
 use dem_results::Summary;
 use dem_results::summary::{Measured, PopulationSummary, SizeSummary, Sizes};
 
+use super::outlets::add_outlets;
 use super::percent::percent;
 use crate::folder::Folder;
 
@@ -88,6 +89,9 @@ pub(crate) fn add_results(page: &mut Page, summary: &Summary, folder: &Folder) {
     });
     if let Some(sizes) = &summary.sizes {
         add_sizes(page, sizes);
+    }
+    if let Some(discharge) = folder.text("discharge.csv") {
+        add_outlets(page, &discharge, summary.simulated_s);
     }
     let distribution = folder.text("distribution.csv");
     if let Some(table) = distribution.as_deref().and_then(passing) {
@@ -230,10 +234,10 @@ fn facts(summary: &Summary) -> Vec<[String; 2]> {
     let population = summary.population.as_ref();
     if let Some(fragments) = &summary.fragments {
         let [fragments_left, of_all] = match population.map_or(0, |all| all.discharged) {
-            0 => ["fragments", "mass of the largest over that of all"],
+            0 => ["fragments", "largest fragment, share of the mass"],
             _ => [
                 "fragments left inside",
-                "mass of the largest of them over theirs",
+                "largest fragment, share of the mass inside",
             ],
         };
         add(fragments_left, fragments.count.to_string());

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use dem_io::Diagnostic;
 use dem_io::body::mass::BodyMass;
-use dem_io::units::significant;
+use dem_io::units::{show_length, significant};
 use dem_laboratory::test_result::TestResult;
 use dem_physics::bond::failure::CauseCounts;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -18,7 +18,7 @@ use super::measured::Measured;
 use super::parts::{
     AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary, TakenIn,
 };
-use super::sizes::Sizes;
+use super::sizes::{RESOLVED_DIAMETERS, Sizes};
 use crate::json::from_json;
 
 /// Program and version.
@@ -190,11 +190,31 @@ impl Unfinished {
             problem: problem.to_string(),
             inputs,
             measures: BTreeMap::new(),
-            verdict: Verdict {
-                sound: false,
-                warnings: vec![problem.to_string()],
-                unresolved: Vec::new(),
-            },
+            verdict: Verdict::new(vec![problem.to_string()], Vec::new()),
+        }
+    }
+}
+
+/// Whether the result of a run can be trusted, in one word.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Trust {
+    /// Yes.
+    Sound,
+    /// It is the result of these spheres: with smaller ones it would be another.
+    Coarse,
+    /// There is something to mend first.
+    #[default]
+    Doubtful,
+}
+
+impl Trust {
+    /// "sound", "coarse" or "doubtful".
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Sound => "sound",
+            Self::Coarse => "coarse",
+            Self::Doubtful => "doubtful",
         }
     }
 }
@@ -203,13 +223,44 @@ impl Unfinished {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Verdict {
-    /// There are no reasons to doubt it.
+    /// In one word.
+    pub word: Trust,
+    /// Whether this word is "sound".
     pub sound: bool,
     /// Reasons to doubt it, a sentence each.
     pub warnings: Vec<String>,
+    /// Why it depends on the size of the spheres, a sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub coarse: Vec<String>,
     /// Names of figures of the fragments that the size of the spheres decides, not the material.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unresolved: Vec<String>,
+}
+
+impl Verdict {
+    /// Doubtful for these reasons, or coarse for those, or sound.
+    pub fn new(warnings: Vec<String>, coarse: Vec<String>) -> Self {
+        let word = match (warnings.is_empty(), coarse.is_empty()) {
+            (true, true) => Trust::Sound,
+            (true, false) => Trust::Coarse,
+            (false, _) => Trust::Doubtful,
+        };
+        Self {
+            word,
+            sound: word == Trust::Sound,
+            warnings,
+            coarse,
+            unresolved: Vec::new(),
+        }
+    }
+
+    /// Why it is not sound: the warnings of a doubtful one, those of a coarse one otherwise.
+    pub fn reasons(&self) -> &[String] {
+        match self.word {
+            Trust::Doubtful => &self.warnings,
+            Trust::Coarse | Trust::Sound => &self.coarse,
+        }
+    }
 }
 
 impl Summary {
@@ -225,17 +276,31 @@ impl Summary {
         from_json(json).ok()
     }
 
-    /// Sets the verdict: `warnings` from the run, and those from the summary itself.
-    pub fn judge(&mut self, warnings: Vec<String>) {
-        let warnings: Vec<String> = (self.problem.iter().cloned())
+    /// Sets the verdict: reasons from the run to doubt it or to call it coarse, and those from the
+    /// summary itself.
+    pub fn judge(&mut self, warnings: Vec<String>, coarse: Vec<String>) {
+        let warnings = (self.problem.iter().cloned())
             .chain(warnings)
             .chain(self.doubts())
             .collect();
+        let coarse = coarse.into_iter().chain(self.small_fragments()).collect();
         self.verdict = Verdict {
-            sound: warnings.is_empty(),
-            warnings,
             unresolved: self.unresolved(),
+            ..Verdict::new(warnings, coarse)
         };
+    }
+
+    /// A sentence on fragments of which half the mass is near the size of a sphere.
+    fn small_fragments(&self) -> Option<String> {
+        let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
+        let all = self.sizes.as_ref().filter(|_| has_split)?.all.get("both")?;
+        all.unresolved.d50.then(|| {
+            format!(
+                "half the mass is in fragments of {} or less, below {RESOLVED_DIAMETERS} sphere diameters ({}): their sizes reflect the spheres rather than the material; use smaller spheres",
+                show_length(all.d50_m),
+                show_length(all.resolved_from_m)
+            )
+        })
     }
 
     /// Names of figures of all fragments that are below the size that the spheres resolve.

@@ -1,6 +1,6 @@
 //! The summary in words.
 
-use std::fmt;
+use std::fmt::{self, Write};
 
 use dem_io::body::mass::mass_lines;
 use dem_io::text::visible;
@@ -51,7 +51,7 @@ impl fmt::Display for Summary {
 
 impl Summary {
     /// Scene, simulated and wall time.
-    fn write_head(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    pub(super) fn write_head(&self, f: &mut impl Write) -> fmt::Result {
         let results = self
             .results
             .as_ref()
@@ -72,7 +72,7 @@ impl Summary {
     }
 
     /// Broken, damaged and yielded bonds.
-    fn write_broken(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    pub(super) fn write_broken(&self, f: &mut impl Write) -> fmt::Result {
         let of_all = match self.population {
             Some(_) => String::new(),
             None if self.bonds > 0 => format!(" of {}", self.bonds),
@@ -110,7 +110,7 @@ impl Summary {
     }
 
     /// Fragments and the largest of them.
-    fn write_fragments(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    pub(super) fn write_fragments(&self, f: &mut impl Write) -> fmt::Result {
         let Some(fragments) = &self.fragments else {
             return Ok(());
         };
@@ -241,12 +241,8 @@ impl Summary {
         )
     }
 
-    /// The text of the summary of a static run.
-    fn write_equilibrium(
-        &self,
-        found: &EquilibriumSummary,
-        f: &mut fmt::Formatter<'_>,
-    ) -> fmt::Result {
+    /// Scene, time of the equilibrium, and wall time.
+    pub(super) fn write_equilibrium_head(&self, f: &mut impl Write) -> fmt::Result {
         let results = self.results.as_ref();
         writeln!(
             f,
@@ -255,7 +251,16 @@ impl Summary {
             significant(self.simulated_s, 6),
             significant(self.wall_s, 3),
             results.map_or(String::new(), |folder| format!(" -> {}", visible(folder))),
-        )?;
+        )
+    }
+
+    /// The text of the summary of a static run.
+    fn write_equilibrium(
+        &self,
+        found: &EquilibriumSummary,
+        f: &mut fmt::Formatter<'_>,
+    ) -> fmt::Result {
+        self.write_equilibrium_head(f)?;
         measure_lines(&self.measures, f)?;
         if let Some(test) = &self.test {
             write!(f, "{test}")?;
@@ -283,7 +288,7 @@ impl Summary {
     }
 
     /// Sizes of all fragments, if any body has broken.
-    fn write_sizes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    pub(super) fn write_sizes(&self, f: &mut impl Write) -> fmt::Result {
         let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
         let Some(sizes) = self.sizes.as_ref().filter(|_| has_split) else {
             return Ok(());
@@ -336,8 +341,11 @@ impl Summary {
         for note in &self.notes {
             writeln!(f, "note         {}", visible(note))?;
         }
-        for warning in &self.verdict.warnings {
-            writeln!(f, "warning      {}", visible(warning))?;
+        let verdict = &self.verdict;
+        for (name, all) in [("warning", &verdict.warnings), ("coarse", &verdict.coarse)] {
+            for reason in all {
+                writeln!(f, "{name:12} {}", visible(reason))?;
+            }
         }
         let all = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"));
         if let (false, Some(all)) = (self.verdict.unresolved.is_empty(), all) {
@@ -348,17 +356,11 @@ impl Summary {
                 significant(1e3 * all.resolved_from_m, 3)
             )?;
         }
-        let verdict = match (self.verdict.warnings.len(), self.notes.len()) {
-            (0, 0) => "sound: no warnings".to_owned(),
-            (0, _) => "sound: no warnings, but see the notes".to_owned(),
-            (1, _) => "doubtful: 1 warning".to_owned(),
-            (many, _) => format!("doubtful: {many} warnings"),
-        };
-        writeln!(f, "verdict      {verdict}")
+        writeln!(f, "verdict      {}", self.verdict_text())
     }
 }
 
-fn measure_lines(measures: &[Measured], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+pub(super) fn measure_lines(measures: &[Measured], f: &mut impl Write) -> fmt::Result {
     let names = measures.iter().map(|m| m.name.chars().count());
     let width = names.max().unwrap_or(0).max(12);
     for measure in measures {

@@ -13,22 +13,27 @@ use dem_engine::state::clusters::fragments::Fragment;
 /// Fraction of the largest kinetic energy in the relative motion of fragments that shows that they
 /// still move apart.
 const FLYING: f64 = 0.05;
+/// Fraction of the run in which no bond has broken at its end that shows that breakage is over.
+const QUIET: f64 = 0.2;
 
 /// Fragments that still move apart.
 pub(crate) struct Flying {
     /// The note or warning.
     pub(crate) text: String,
-    /// Whether something that can break touches something: then breakage may not be over.
-    /// Otherwise what has been simulated is complete, and a later impact is another question.
-    pub(crate) touches: bool,
+    /// Whether breakage may not be over: something that can break touches something, and a bond has
+    /// broken not long ago. Otherwise what has been simulated is complete, and a later impact is
+    /// another question.
+    pub(crate) may_break: bool,
 }
 
 /// The fragments that still move apart, if some cluster can break and may meet something.
-/// `largest_kinetic_j`: the largest kinetic energy of the run.
+/// `largest_kinetic_j`: the largest kinetic energy of the run; `last_break_s`: when its last bond
+/// broke.
 pub(crate) fn still_flying(
     state: &State,
     fragments: &[Fragment],
     largest_kinetic_j: f64,
+    last_break_s: f64,
 ) -> Option<Flying> {
     let clusters = state.clusters.as_ref()?;
     let pieces = pieces_by_body(clusters, fragments);
@@ -47,19 +52,27 @@ pub(crate) fn still_flying(
     let end = significant(state.time_s, 4);
     let touching = touching(state);
     let touches = |id: &u32| clusters.members(*id).iter().any(|i| touching.contains(i));
+    let quiet_s = state.time_s - last_break_s;
     if breakable.iter().any(touches) {
+        if quiet_s >= QUIET * state.time_s {
+            let quiet = significant(quiet_s, 3);
+            return Some(Flying {
+                text: format!("{seen}; no bond has broken for {quiet} s"),
+                may_break: false,
+            });
+        }
         let text = format!(
             "{seen}, and what can still break touches something: it may break further; set run.end_time later than {end} s"
         );
         return Some(Flying {
             text,
-            touches: true,
+            may_break: true,
         });
     }
     let outlook = outlook(state, clusters, &breakable)?;
     Some(Flying {
         text: format!("{seen}; nothing that can still break touches anything{outlook}"),
-        touches: false,
+        may_break: false,
     })
 }
 

@@ -109,6 +109,10 @@ pub(super) enum Command {
         /// Write a picture of the start to this file (.png)
         #[arg(long, value_name = "FILE")]
         picture: Option<PathBuf>,
+        /// Print everything: all values of the scene, masses, estimates of the time step, stages,
+        /// notes
+        #[arg(long, short, conflicts_with_all = ["json", "quiet"])]
+        verbose: bool,
         /// Only print errors; --json is still printed
         #[arg(long, short)]
         quiet: bool,

@@ -1,7 +1,7 @@
 //! `dem-run calibrate`: numbers of a scene with which the mean test of several packings gives the
 //! wanted results.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,7 @@ use dem_io::diagnostic::Kind;
 use dem_io::hash::{file_hash, fnv1a_of_parts};
 use dem_io::safe_write::{explain, write_file};
 use dem_io::text::visible;
+use dem_io::units::show_length;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
@@ -26,8 +27,9 @@ use dem_terminal::program::today;
 use dem_terminal::progress::{ProgressBar, progress_bar};
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 
-use super::packings::{Packings, spheres_across};
+use super::packings::{Packings, mean_diameter_m, smallest_extent_m};
 use super::pool::in_pool;
+use super::progress::LogOfTests;
 use super::scene_arguments::SceneArguments;
 use crate::calibration::{Bench, ModulusBy, Prospect, SceneText, prospect, unknowns};
 use crate::interrupt::Interrupt;
@@ -371,6 +373,7 @@ fn new_record(
         particles: 0,
         bonds: 0,
         spheres_across: 0.0,
+        mean_diameter_m: 0.0,
         start: None,
         rounds: Vec::new(),
         end: None,
@@ -440,7 +443,8 @@ impl Job<'_> {
         let mut case = record.cases[at].clone();
         case.particles = bodies[0].positions.len();
         case.bonds = bodies[0].bonds.len();
-        case.spheres_across = spheres_across(&bodies[0]);
+        case.mean_diameter_m = mean_diameter_m(&bodies[0]);
+        case.spheres_across = smallest_extent_m(&bodies[0]) / case.mean_diameter_m;
         if case.start.is_none() && case.rounds.is_empty() {
             case.start = bench.start(count)?;
             record.cases[at].clone_from(&case);
@@ -455,14 +459,20 @@ impl Job<'_> {
                 bar.set_position((1000.0 * sum / count as f64) as u64);
             }
         };
-        let shared = Mutex::new(&mut *record);
+        let shared = Mutex::new((
+            &mut *record,
+            LogOfTests::new(self.options.quiet, &case.name),
+        ));
         let save = |case: &Case| {
-            let Ok(mut record) = shared.lock() else {
+            let Ok(mut shared) = shared.lock() else {
                 return Ok(());
             };
-            bar.set_message(format!("{} tests done", case.cost().1));
+            let (record, log) = &mut *shared;
+            let tests = case.cost().1;
+            bar.set_message(format!("{tests} tests done"));
+            log.tell(tests);
             record.cases[at].clone_from(case);
-            write_record(self.record_file, &record)
+            write_record(self.record_file, record)
         };
         let names = self.packings.names();
         let test = |factors: &[f64], packing: usize| {
@@ -544,10 +554,21 @@ fn finish(
     }
 }
 
-/// The material file of a case: where its numbers come from, as comments, and the tables.
+/// The material file of a case: where its numbers come from, as comments, and the tables, with the
+/// diameter for which the bonds are calibrated.
 fn material_of(record: &Record, case: &Case, scene: &SceneText<'_>) -> Result<String> {
     let factors = case.result().map_or(&[][..], |round| &round.factors);
-    let overrides = crate::calibration::overrides(scene, &record.unknowns, factors);
+    let mut overrides = crate::calibration::overrides(scene, &record.unknowns, factors);
+    let numbers = record.unknowns.iter().flat_map(|unknown| &unknown.numbers);
+    let bonds: BTreeSet<&str> = numbers
+        .filter_map(|number| number.path.strip_prefix("bonds.")?.split('.').next())
+        .collect();
+    let diameter = show_length(case.mean_diameter_m);
+    overrides.extend(
+        bonds
+            .iter()
+            .map(|bond| format!("bonds.{bond}.calibrated_diameter=\"{diameter}\"")),
+    );
     let tables = material_text(scene.text, scene.source, &overrides)?;
     Ok(format!("{}{tables}", dem_calibration::origin(record, case)))
 }

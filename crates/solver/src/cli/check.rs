@@ -4,6 +4,7 @@ use std::path::Path;
 
 use dem_io::safe_write::write_file;
 use dem_io::safe_write::write_json_text;
+use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::write_target::need_folder_of;
 use dem_io::{Diagnostic, Result};
@@ -12,6 +13,7 @@ use dem_scene::{Integrator, Scene};
 use dem_terminal::standard_output::write_standard_output;
 use serde_json::{Value, json};
 
+use super::check_form::{Form, VERBOSE, expected_verdict};
 use super::memory::{memory_bytes, size_text};
 use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
@@ -25,6 +27,9 @@ use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
 use dem_runner::pictures::View;
 
+/// Number of lines on the contents of a scene that are always shown.
+const SHOWN: usize = 4;
+
 /// Samples that differ by less than this factor are told as one.
 const ALIKE: f64 = 1.2;
 
@@ -33,7 +38,7 @@ const ALIKE: f64 = 1.2;
 pub(super) fn check_scene(
     arguments: &SceneArguments,
     picture: Option<&Path>,
-    quiet: bool,
+    form: Form,
 ) -> Result<()> {
     if !arguments.names_a_scene() {
         return Err(Diagnostic::input(
@@ -54,10 +59,10 @@ pub(super) fn check_scene(
         if let Some(file) = picture {
             write_picture(&scene, &plan, file)?;
         }
-        if quiet && !arguments.json {
-            return Ok(());
+        match form {
+            Form::Nothing => Ok(()),
+            form => check(&scene, &plan, form),
         }
-        check(&scene, &plan, arguments.json)
     })
 }
 
@@ -79,9 +84,9 @@ fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
 }
 
 /// Prints the plan of a scene, as text or as JSON.
-fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
+fn check(scene: &Scene, plan: &Plan, form: Form) -> Result<()> {
     if scene.run.integrator == Integrator::Static {
-        return statics::check(scene, plan, memory_bytes(&plan.state), as_json);
+        return statics::check(scene, plan, memory_bytes(&plan.state), form);
     }
     let steps = steps(scene, plan);
     let bytes = memory_bytes(&plan.state);
@@ -103,7 +108,7 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
             .collect()
     };
     write_standard_output(|out| {
-        if as_json {
+        if form == Form::Json {
             let value = json!({
                 "scene": scene.source,
                 "particles": plan.state.particles.len(),
@@ -117,6 +122,7 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "next_limit": limits.map(|[_, next]| next),
                 "notes": plan.notes.iter().chain(&trial.notes).collect::<Vec<_>>(),
                 "warnings": plan.warnings.iter().chain(&plan.forecast.warnings).collect::<Vec<_>>(),
+                "coarse": plan.coarse,
                 "first_contacts": plan.forecast.first_contacts,
                 "to_be_fed": plan.forecast.to_come,
                 "inputs": plan.inputs,
@@ -133,6 +139,8 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "predicted_run_time_range_s": trial.range_s,
             });
             write_json_text(out, &value)
+        } else if form == Form::Short {
+            write!(out, "{}", short(scene, plan, steps, bytes, &trial))
         } else {
             write!(
                 out,
@@ -161,6 +169,33 @@ fn steps(scene: &Scene, plan: &Plan) -> Steps {
         first: number(plan.step.step_s),
         once_replaced: becomes_smaller.then(|| number(replaced_s)),
     }
+}
+
+/// What the run will be in about ten lines: contents, time step, run time, and reasons to doubt its
+/// result or to call it coarse.
+fn short(scene: &Scene, plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) -> String {
+    let contents = contents(plan);
+    let first_lines = contents.lines().filter(|line| !line.starts_with("mass"));
+    let mut text = format!("{}\n", visible(&scene.source));
+    for line in first_lines
+        .filter(|line| !line.starts_with(' '))
+        .take(SHOWN)
+    {
+        text += &format!("{line}\n");
+    }
+    let mut line = |name: &str, what: &str| text += &format!("{name:14} {what}\n");
+    let limit = limited_by(plan).map_or_else(String::new, |[first, _]| {
+        format!(", limited by {}", first.reason)
+    });
+    let step = significant(plan.step.step_s, 4);
+    line(
+        "time step",
+        &format!("{step} s{limit}; {} steps", steps.first),
+    );
+    line("memory", &format!("about {}", size_text(bytes)));
+    line("run time", &(run_time_text(trial) + &trial.pictures_text()));
+    line("", VERBOSE);
+    text + &expected_verdict(plan)
 }
 
 fn text(plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) -> String {
@@ -193,6 +228,9 @@ fn text(plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) -> String {
     }
     for warning in plan.warnings.iter().chain(&plan.forecast.warnings) {
         line("warning", warning.clone());
+    }
+    for reason in &plan.coarse {
+        line("coarse", reason.clone());
     }
     let fed_bytes: f64 = plan.forecast.to_come.iter().map(|fed| fed.bytes).sum();
     let with_fed = if fed_bytes > 0.0 {

@@ -195,9 +195,13 @@ fn same_files(files: &[PathBuf]) -> Option<(&PathBuf, &PathBuf)> {
     (0..files.len()).find_map(|at| twice(&at))
 }
 
-/// Smallest extent of a body over the mean diameter of its spheres.
-pub(super) fn spheres_across(body: &Body) -> f64 {
-    let mean_m = 2.0 * body.radii.iter().sum::<f64>() / body.radii.len().max(1) as f64;
+/// Mean diameter of the spheres of a body, m.
+pub(super) fn mean_diameter_m(body: &Body) -> f64 {
+    2.0 * body.radii.iter().sum::<f64>() / body.radii.len().max(1) as f64
+}
+
+/// Smallest extent of a body, m.
+pub(super) fn smallest_extent_m(body: &Body) -> f64 {
     let extent = |k: usize| {
         let ends = body.positions.iter().zip(&body.radii);
         let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (p, r)| {
@@ -205,5 +209,5 @@ pub(super) fn spheres_across(body: &Body) -> f64 {
         });
         high - low
     };
-    (0..3).map(extent).fold(f64::INFINITY, f64::min) / mean_m
+    (0..3).map(extent).fold(f64::INFINITY, f64::min)
 }

@@ -132,6 +132,41 @@ impl Log {
     }
 }
 
+/// The lines of a calibration in a log: the number of tests done, at most one in [`SHORT_S`].
+pub(super) struct LogOfTests {
+    begun: Instant,
+    last: Instant,
+    prefix: String,
+    is_shown: bool,
+}
+
+impl LogOfTests {
+    /// Begins now; shows nothing if `quiet`, and on a terminal. `size`: that of the spheres, if
+    /// several are calibrated.
+    pub(super) fn new(quiet: bool, size: &str) -> Self {
+        Self {
+            begun: Instant::now(),
+            last: Instant::now(),
+            prefix: format!("calibrate {size}").trim_end().to_owned(),
+            is_shown: !quiet && !std::io::stderr().is_terminal(),
+        }
+    }
+
+    /// Writes a line if one is due.
+    pub(super) fn tell(&mut self, tests: usize) {
+        if self.is_shown && self.last.elapsed().as_secs_f64() >= SHORT_S {
+            self.last = Instant::now();
+            // A closed output is not a reason to stop.
+            let _ = writeln!(
+                std::io::stderr(),
+                "{}: {tests} tests done in {} s",
+                self.prefix,
+                significant(self.begun.elapsed().as_secs_f64(), 2)
+            );
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

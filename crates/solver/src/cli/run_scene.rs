@@ -25,7 +25,7 @@ use super::scene_arguments::SceneArguments;
 use crate::interrupt::Interrupt;
 use dem_engine::threads::keep_awake;
 use dem_plan::Plan;
-use dem_results::summary::Unfinished;
+use dem_results::summary::{Trust, Unfinished};
 use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
 use dem_rig::watch::TestSettings;
@@ -52,6 +52,9 @@ pub(super) struct RunArguments {
     /// and checkpoint
     #[arg(long, value_name = "FILES", default_value = "all", value_parser = ["all", "tables"])]
     keep: String,
+    /// Print everything in the summary: masses, steps, speed, time of each stage, notes
+    #[arg(long, short, conflicts_with_all = ["json", "quiet"])]
+    verbose: bool,
     /// Only print errors: no progress, no warnings, no summary; --json is still printed
     #[arg(long, short)]
     quiet: bool,
@@ -65,6 +68,7 @@ impl RunArguments {
             ("--force", self.force),
             ("--resume", self.resume),
             ("--keep", self.keep != "all"),
+            ("--verbose", self.verbose),
             ("--set", !self.scene.overrides.is_empty()),
             ("--material", !self.scene.material.is_empty()),
             ("--force-step", self.scene.force_step),
@@ -105,7 +109,7 @@ pub(super) fn run_scene(
     prepared.inputs.set = arguments.scene.all_overrides();
     let inputs = prepared.inputs.clone();
     if !arguments.quiet {
-        say_beforehand(&prepared);
+        say_beforehand(&prepared, arguments.verbose);
     }
     let folder = open_folder(path, &scene)?;
     if let Some(folder) = folder.as_ref().filter(|_| !arguments.resume) {
@@ -268,9 +272,11 @@ fn checkpoint_of(folder: &ResultsFolder) -> Result<Snapshot<'static>> {
     Snapshot::from_bytes(&read_checkpoint(&path)?).map_err(within)
 }
 
-/// Prints notes and warnings before the run. A closed output is not a reason to stop.
-fn say_beforehand(plan: &Plan) {
-    let notes = plan.notes.iter().map(|note| ("note", note));
+/// Prints warnings before the run, and notes if everything is printed. A closed output is not a
+/// reason to stop.
+fn say_beforehand(plan: &Plan, with_notes: bool) {
+    let notes = plan.notes.iter().filter(|_| with_notes);
+    let notes = notes.map(|note| ("note", note));
     let warnings = plan.warnings.iter().chain(&plan.forecast.warnings);
     let warnings = warnings.map(|warning| ("warning", warning));
     for (kind, text) in notes.chain(warnings) {
@@ -289,20 +295,23 @@ fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
     if arguments.scene.json {
         write_standard_json(summary)?;
     } else if !arguments.quiet && (outcome.problem.is_none() || summary.ended_by == INTERRUPTION) {
-        let mut text = summary.to_string();
+        let mut text = match arguments.verbose {
+            true => summary.to_string(),
+            false => summary.short(),
+        };
         if summary.results.is_none() {
             text += "no files written: add --output FOLDER to keep the results\n";
         }
-        let is_sound = summary.verdict.sound;
-        write_standard_lines(&text, |line| colour_of(line, is_sound))?;
+        let word = summary.verdict.word;
+        write_standard_lines(&text, |line| colour_of(line, word))?;
     }
     outcome.problem.map_or(Ok(()), Err)
 }
 
 /// The colour of the first word of a line of the summary.
-fn colour_of(line: &str, is_sound: bool) -> Option<Colour> {
+fn colour_of(line: &str, word: Trust) -> Option<Colour> {
     match line.split(' ').next() {
-        Some("verdict") if is_sound => Some(Colour::Green),
+        Some("verdict") if word != Trust::Doubtful => Some(Colour::Green),
         Some("verdict" | "warning") => Some(Colour::Yellow),
         _ => None,
     }

@@ -2,10 +2,12 @@
 
 use dem_io::Result;
 use dem_io::safe_write::write_json_text;
+use dem_io::text::visible;
 use dem_scene::Scene;
 use dem_terminal::standard_output::write_standard_output;
 use serde_json::json;
 
+use super::check_form::{Form, VERBOSE, expected_verdict};
 use super::memory::size_text;
 use dem_io::body::mass::mass_lines;
 use dem_plan::Plan;
@@ -16,13 +18,13 @@ const UNUSED: &str = "run.rest_energy_ratio, end_run_above of measures, run.time
 
 /// Prints what will be solved, as text or as JSON. `state_bytes` is the memory of the arrays of the
 /// state.
-pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: bool) -> Result<()> {
+pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, form: Form) -> Result<()> {
     let state = &plan.state;
     let estimate = StaticsEstimate::of(state, scene.run.end_time_s)
         .map_err(|error| error.within(&scene.source))?;
     let bytes = state_bytes + estimate.memory_bytes;
     write_standard_output(|out| {
-        if as_json {
+        if form == Form::Json {
             let value = json!({
                 "scene": scene.source,
                 "particles": state.particles.len(),
@@ -32,10 +34,16 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 "memory_bytes": bytes,
                 "notes": plan.notes,
                 "warnings": plan.warnings,
+                "coarse": plan.coarse,
             });
             return write_json_text(out, &value);
         }
-        writeln!(out, "{}", scene.describe())?;
+        let is_whole = form == Form::Whole;
+        if is_whole {
+            writeln!(out, "{}", scene.describe())?;
+        } else {
+            writeln!(out, "{}", visible(&scene.source))?;
+        }
         let mut line = |name: &str, what: &str| writeln!(out, "{name:14} {what}");
         line(
             "holds",
@@ -45,8 +53,8 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 state.bonds.len()
             ),
         )?;
-        for (name, mass) in mass_lines(&plan.masses) {
-            line(name, &mass)?;
+        for (name, mass) in mass_lines(&plan.masses).iter().filter(|_| is_whole) {
+            line(name, mass)?;
         }
         line(
             "solves",
@@ -64,13 +72,15 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
             }
         };
         line("by", &format!("Newton's method; {factor}"))?;
-        line("not used", UNUSED)?;
-        for note in &plan.notes {
-            line("note", note)?;
+        line("memory", &format!("about {}", size_text(bytes)))?;
+        if is_whole {
+            line("not used", UNUSED)?;
+            for note in &plan.notes {
+                line("note", note)?;
+            }
+        } else {
+            line("", VERBOSE)?;
         }
-        for warning in &plan.warnings {
-            line("warning", warning)?;
-        }
-        line("memory", &format!("about {}", size_text(bytes)))
+        write!(out, "{}", expected_verdict(plan))
     })
 }

@@ -3,10 +3,12 @@
 use super::{Bench, corpus, dem_run, scene_of_data, vtp_bytes};
 
 fn check(bench: &Bench, options: &[&str]) -> String {
+    let whole = (!options.contains(&"--json")).then_some("--verbose");
     let output = dem_run()
         .current_dir(bench.path(""))
         .arg("check")
         .args(options)
+        .args(whole)
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);

@@ -33,7 +33,7 @@ fn a_run_ends_at_the_first_row_above_the_value() {
     let bench = Bench::new();
     let scene = bench.write("falling.toml", FALLING);
     let said = bench.good(&scene, &["--output", "out"]);
-    assert!(said.contains("ended by measure"), "{said}");
+    assert!(said.contains("\nended by     measure\n"), "{said}");
     let ended = summary(&bench);
     assert_eq!(ended["ended_by"], "measure");
     // 2.1 m/s are exceeded at the row of 0.25 s.

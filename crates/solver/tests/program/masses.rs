@@ -47,10 +47,10 @@ fn mass_of_spheres_and_of_the_shape() {
     let bench = bench(&[], Some(SHAPE_M3));
     let mass = "row 8.587e-5 kg; its shape filled with 2050 kg/m3 would weigh 0.0001025 kg (-16 %); solid density 1717 kg/m3";
     let centre = "  centre 9 mm, 0 m, 0 m; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2";
-    let [text, _] = said(&bench, &["check", "scene.toml"]);
+    let [text, _] = said(&bench, &["check", "scene.toml", "--verbose"]);
     let lines = format!("mass           {mass}\n               {centre}\n");
     assert!(text.contains(&lines), "{text}");
-    let [text, errors] = said(&bench, &["scene.toml", "--output", "out"]);
+    let [text, errors] = said(&bench, &["scene.toml", "--verbose", "--output", "out"]);
     let lines = format!("mass         {mass}\n             {centre}\n");
     assert!(text.contains(&lines), "{text}");
     let remedy = "body 'row' weighs 8.587e-5 kg, -16 % against its shape filled with 2050 kg/m3: bodies.row.body_density = \"2050 kg/m3\" gives it that mass";
@@ -119,7 +119,7 @@ fn a_body_density_and_a_mass_are_kept_and_noted_no_more() {
 #[test]
 fn without_a_shape_the_mass_alone_is_told() {
     let bench = bench(&[], None);
-    let [text, _] = said(&bench, &["check", "scene.toml"]);
+    let [text, _] = said(&bench, &["check", "scene.toml", "--verbose"]);
     assert!(text.contains("mass           row 8.587e-5 kg\n"), "{text}");
     assert!(!text.contains("its shape filled"), "{text}");
     let found = json(&bench, &["check", "scene.toml", "--json"]);
@@ -166,7 +166,7 @@ quantity = "force_z"
 
 #[test]
 fn what_dem_pack_warned_of_is_not_forgotten() {
-    let few = "only about 4.9 particles across the thinnest part";
+    let few = "3 bonds per particle, fewer than 4 are hardly rigid";
     let bench = bench(&[few, "2 pieces"], Some(MASS_KG / 2050.0));
     let wanted = [few, "2 pieces"].map(|text| {
         format!(
@@ -194,5 +194,41 @@ fn what_dem_pack_warned_of_is_not_forgotten() {
     );
     let ran = json(&bench, &[scene, "--json"]);
     assert_eq!(ran["verdict"]["sound"], false);
+    assert_eq!(ran["verdict"]["word"], "doubtful");
     assert_eq!(ran["verdict"]["warnings"], serde_json::json!(wanted));
+}
+
+/// A row of spheres 4.9 across, with and without bonds that were calibrated with such spheres, and as
+/// a rigid clump.
+#[test]
+fn a_body_of_few_spheres_is_coarse_unless_it_is_rigid_or_calibrated() {
+    let bench = bench(&[], Some(MASS_KG / 2050.0));
+    let mut body = row(5);
+    body.about.program = Some("dem-pack 0.1.0".to_owned());
+    body.about.particles_across = Some(4.9);
+    body.about.thinnest_part_m = Some(9.8e-3);
+    bench.write("row.vtp", vtp_bytes(&body));
+    let scene = bench.path("scene.toml");
+    let scene = scene.to_str().unwrap();
+    let diameter_m = 2.0 * body.radii.iter().sum::<f64>() / body.radii.len() as f64;
+    let verdict = |set: &[&str]| {
+        let all = [&[scene, "--json"], set].concat();
+        json(&bench, &all)["verdict"].clone()
+    };
+    let coarse = verdict(&[]);
+    assert_eq!(coarse["word"], "coarse", "{coarse}");
+    assert_eq!(coarse["sound"], false);
+    let why = coarse["coarse"][0].as_str().unwrap();
+    assert!(
+        why.contains("only about 4.9 particles across the thinnest part (9.8 mm)"),
+        "{why}"
+    );
+    let [text, errors] = said(&bench, &[scene]);
+    assert!(text.contains("\nverdict      coarse: "), "{text}");
+    assert!(errors.is_empty(), "{errors}");
+    let calibrated = |factor: f64| format!("bonds.any.calibrated_diameter={}", factor * diameter_m);
+    assert_eq!(verdict(&["--set", &calibrated(1.05)])["word"], "sound");
+    assert_eq!(verdict(&["--set", &calibrated(1.2)])["word"], "coarse");
+    let rigid = ["--set", "bodies.row.start_as=clump"];
+    assert_eq!(verdict(&rigid)["word"], "sound", "{}", verdict(&rigid));
 }

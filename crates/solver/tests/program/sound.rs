@@ -233,3 +233,30 @@ walls.belt = { box = { min = [0.9, -0.1, -0.1], max = [1.1, 0.1, 0] }, material 
     let error = part["energy_error"].as_f64().unwrap();
     assert!(error > whole && error < 0.01, "{part}");
 }
+
+/// A ball rides on a belt asleep when another one falls onto the belt: the energy that it took along
+/// into its sleep is not missing in that of both.
+#[test]
+fn a_body_that_lands_beside_one_that_rides_asleep_is_sound() {
+    let bench = Bench::new();
+    let scene = "version = 1
+run = { end_time = \"0.5 s\", gravity = [0, 0, -9.81] }
+sleep = { speed = \"20 mm/s\", after = \"20 ms\" }
+materials.stone = { density = 2000, young_modulus = \"50 MPa\", poisson_ratio = 0.3 }
+contacts.stone-stone = { restitution = 0.3, friction = 0.5, rolling_friction = 0.1 }
+bodies.first = { particles = [[0, 0, 0.01, 0.01]], material = \"stone\", velocity = [2, 0, 0] }
+bodies.second = { particles = [[0.5, 0.2, 0.3, 0.01]], material = \"stone\", velocity = [2, 0, 0] }
+walls.belt = { box = { min = [-1, -1, -0.1], max = [9, 1, 0] }, material = \"stone\", surface_velocity = [2, 0, 0] }
+";
+    let summary = json(&bench, "belt.toml", scene);
+    assert!(
+        summary["sleep"]["bodies"].as_f64().unwrap() >= 1.0,
+        "{}",
+        summary["sleep"]
+    );
+    assert_eq!(
+        summary["verdict"]["word"], "sound",
+        "{}",
+        summary["verdict"]
+    );
+}

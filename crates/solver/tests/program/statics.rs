@@ -153,7 +153,7 @@ fn check_says_what_is_solved() {
     let check = |more: &[&str]| {
         let output = dem_run()
             .current_dir(bench.path(""))
-            .arg("check")
+            .args(["check", "--verbose"])
             .arg(&scene)
             .args(STATIC)
             .args(more)

@@ -263,7 +263,11 @@ fn check_speaks_of_what_inlets_will_feed() {
         (&3.0.into(), &3.0.into())
     );
     assert!(pairs["bytes"].as_f64().unwrap() > 0.0);
-    let output = super::dem_run().arg("check").arg(&scene).output().unwrap();
+    let output = super::dem_run()
+        .args(["check", "--verbose"])
+        .arg(&scene)
+        .output()
+        .unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     for said in [
         "0 particles, 0 bonds at the start\n",

@@ -16,4 +16,6 @@ pub(super) const PARTICLE_DENSITY: &str = "particle_density_kg_m3";
 pub(super) const OVERLAP: &str = "overlap";
 pub(super) const BOND_RANGE: &str = "bond_range";
 pub(super) const SEED: &str = "seed";
+pub(super) const THINNEST_PART: &str = "thinnest_part_m";
+pub(super) const PARTICLES_ACROSS: &str = "particles_across";
 pub(super) const WARNINGS: &str = "warnings";

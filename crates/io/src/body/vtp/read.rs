@@ -3,8 +3,8 @@
 use std::io::BufRead;
 
 use super::names::{
-    BOND_RANGE, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, SEED,
-    SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
+    BOND_RANGE, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PARTICLES_ACROSS,
+    PROGRAM, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, THINNEST_PART, VERSION, WARNINGS,
 };
 use super::shapes::{BOND_ENDS, BOND_OFFSETS, POSITIONS, of_body, of_cells, of_points};
 use crate::body::histories::{self, DIRECTION};
@@ -66,6 +66,8 @@ fn about(arrays: &Arrays) -> Result<About> {
         overlap: arrays.float(OVERLAP),
         bond_range: arrays.float(BOND_RANGE),
         seed: arrays.whole(SEED)?,
+        thinnest_part_m: arrays.float(THINNEST_PART),
+        particles_across: arrays.float(PARTICLES_ACROSS),
         warnings: arrays.texts(WARNINGS)?,
     })
 }

@@ -1,8 +1,8 @@
 //! The arrays that bodies, frames and walls are made of, by their sections and names.
 
 use super::names::{
-    BOND_RANGE, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM, SEED, SHAPE_VOLUME, SOURCE,
-    SOURCE_HASH, VERSION, WARNINGS,
+    BOND_RANGE, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PARTICLES_ACROSS, PROGRAM, SEED,
+    SHAPE_VOLUME, SOURCE, SOURCE_HASH, THINNEST_PART, VERSION, WARNINGS,
 };
 use crate::body::histories::{self, DIRECTION};
 use crate::body::stored_frame as frame;
@@ -32,7 +32,8 @@ pub(super) fn of_body(section: &str, name: &str) -> Option<Shape> {
         (
             "FieldData",
             VERSION | LENGTH_UNIT | PROGRAM | SOURCE | SOURCE_HASH | SHAPE_VOLUME
-            | PARTICLE_DENSITY | OVERLAP | BOND_RANGE | SEED | WARNINGS,
+            | PARTICLE_DENSITY | OVERLAP | BOND_RANGE | SEED | THINNEST_PART | PARTICLES_ACROSS
+            | WARNINGS,
         ) => Some(FIELD),
         _ => of_particles_and_bonds(section, name),
     }

@@ -1,0 +1,116 @@
+//! The summary in about ten lines: what happened, its figures, whether to trust it.
+
+use std::fmt::{self, Write};
+
+use dem_io::text::visible;
+use dem_io::units::significant;
+
+use super::contents::{Summary, Trust};
+use super::text::measure_lines;
+
+/// Number of measures, and of reasons for the verdict, that are shown; the others are counted.
+const SHOWN: usize = 4;
+
+impl Summary {
+    /// The answers of the run in about ten lines; [`Summary`]'s `Display` shows everything.
+    pub fn short(&self) -> String {
+        let mut text = String::new();
+        // Writing to a text does not fail.
+        let _ = self.write_short(&mut text);
+        text
+    }
+
+    fn write_short(&self, out: &mut String) -> fmt::Result {
+        match &self.equilibrium {
+            Some(_) => self.write_equilibrium_head(out)?,
+            None => self.write_head(out)?,
+        }
+        if !matches!(self.ended_by.as_str(), "end time" | "equilibrium") {
+            writeln!(out, "ended by     {}", self.ended_by)?;
+        }
+        let shown = self.measures.len().min(SHOWN);
+        measure_lines(&self.measures[..shown], out)?;
+        if self.measures.len() > shown {
+            writeln!(
+                out,
+                "             and {} more measures",
+                self.measures.len() - shown
+            )?;
+        }
+        if let Some(test) = &self.test {
+            write!(out, "{test}")?;
+        }
+        if self.equilibrium.is_none() {
+            self.write_broken(out)?;
+            self.write_flow(out)?;
+            self.write_fragments(out)?;
+            self.write_sizes(out)?;
+            writeln!(out, "energy error {}", significant(self.energy_error, 2))?;
+        }
+        self.write_trust(out)
+    }
+
+    /// Bodies fed and discharged.
+    fn write_flow(&self, out: &mut String) -> fmt::Result {
+        let Some(bodies) = self
+            .population
+            .as_ref()
+            .filter(|p| p.fed + p.discharged > 0)
+        else {
+            return Ok(());
+        };
+        let discharged = match bodies.outlets.len() {
+            0 => String::new(),
+            _ => format!(
+                ", {} kg discharged in {} pieces",
+                significant(bodies.discharged_kg, 4),
+                bodies.discharged
+            ),
+        };
+        let fed = significant(bodies.fed_kg, 4);
+        writeln!(
+            out,
+            "bodies       {} fed ({fed} kg){discharged}",
+            bodies.fed
+        )
+    }
+
+    /// The verdict with its reasons, and the page of the run.
+    fn write_trust(&self, out: &mut String) -> fmt::Result {
+        let verdict = &self.verdict;
+        let name = match verdict.word {
+            Trust::Doubtful => "warning",
+            Trust::Coarse | Trust::Sound => "coarse",
+        };
+        let reasons = verdict.reasons();
+        for reason in reasons.iter().take(SHOWN) {
+            writeln!(out, "{name:12} {}", visible(reason))?;
+        }
+        if reasons.len() > SHOWN {
+            writeln!(out, "             and {} more", reasons.len() - SHOWN)?;
+        }
+        writeln!(out, "verdict      {}", self.verdict_text())?;
+        if let Some(folder) = &self.results {
+            writeln!(
+                out,
+                "page         {}",
+                visible(&format!("{folder}/report.html"))
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The word of the verdict and what follows from it.
+    pub(super) fn verdict_text(&self) -> String {
+        match self.verdict.word {
+            Trust::Sound => "sound".to_owned(),
+            Trust::Coarse => {
+                "coarse: the result is that of these spheres, others would give another".to_owned()
+            }
+            Trust::Doubtful => match self.verdict.warnings.len() {
+                1 => "doubtful: 1 warning".to_owned(),
+                many => format!("doubtful: {many} warnings"),
+            },
+        }
+    }
+}
