@@ -63,7 +63,7 @@ def test_summary_measures_and_verdict(dropped: crumble.Results) -> None:
     assert dropped.measures["push"] >= dropped.series["push_n"].max() > 0
     assert dropped.units == {"largest": "", "push": "N"}
     verdict = dropped.verdict
-    assert (verdict.word, verdict.sound, verdict.warnings) == ("coarse", False, ())
+    assert (verdict.word, verdict.sound, len(verdict.warnings)) == ("doubtful", False, 1)
     assert "fewer than 10 the result reflects the particles" in verdict.coarse[0]
 
 

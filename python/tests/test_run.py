@@ -126,9 +126,11 @@ def test_progress_is_told_and_nothing_is_printed(
     template: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     told: list[tuple[float, str]] = []
-    crumble.run(template / "scene.toml", tmp_path / "a", progress=lambda *so_far: told.append(so_far))
-    assert capfd.readouterr() == ("", "")
-    crumble.run(template / "scene.toml", tmp_path / "b", progress=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", crumble.DoubtfulResult)
+        crumble.run(template / "scene.toml", tmp_path / "a", progress=lambda *so_far: told.append(so_far))
+        assert capfd.readouterr() == ("", "")
+        crumble.run(template / "scene.toml", tmp_path / "b", progress=True)
     fractions = [fraction for fraction, _ in told]
     assert len(told) > 3 and fractions == sorted(fractions)
     assert all(text.endswith("bonds broken") for _, text in told)
@@ -149,7 +151,9 @@ def test_python_goes_on_during_a_run(template: Path, tmp_path: Path) -> None:
 
     counter = threading.Thread(target=count)
     counter.start()
-    results = crumble.run(template / "scene.toml", tmp_path / "out", threads=1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", crumble.DoubtfulResult)
+        results = crumble.run(template / "scene.toml", tmp_path / "out", threads=1)
     ended.set()
     counter.join()
     # A thread that had to wait for the run would have counted to 1.
@@ -185,7 +189,9 @@ def test_ctrl_c_keeps_the_results_and_the_run_goes_on(
     assert half.summary["ended_by"] == "interruption" and half.verdict.word == "doubtful"
     assert 0 < len(half.series) < len(dropped.series) and len(half.frames) > 2
     assert half.verdict.warnings[0].startswith("interrupted")
-    whole = crumble.run(scene, out, resume=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", crumble.DoubtfulResult)
+        whole = crumble.run(scene, out, resume=True)
     for file in ("series.csv", "events.csv", "fragments.csv", "frames/frame_000030.vtp"):
         assert (whole.folder / file).read_bytes() == (dropped.folder / file).read_bytes()
 
@@ -198,6 +204,15 @@ def test_an_unstable_run_raises_and_has_results(tmp_path: Path) -> None:
     assert caught.value.exit_code == 3
     results = crumble.read(tmp_path / "out")
     assert results.summary["ended_by"] == "instability" and results.verdict.word == "doubtful"
+
+
+def test_a_coarse_run_is_not_warned_of(template: Path, tmp_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        results = crumble.run(template / "scene.toml", tmp_path / "out", run={"end_time": "0.01 ms"})
+    assert (results.verdict.word, results.verdict.sound, results.verdict.warnings) == ("coarse", False, ())
+    [reason] = results.verdict.coarse
+    assert "only about 4.4 particles across the thinnest part" in reason
 
 
 def test_a_doubtful_run_is_one_warning(tmp_path: Path) -> None:
@@ -227,7 +242,7 @@ def test_check_is_a_dry_run(template: Path) -> None:
     # The end of the run is a whole number of steps.
     half_s = usual["time_step_s"] / 2
     assert plan["time_step_s"] == pytest.approx(half_s, rel=1 / usual["steps"])
-    assert usual["particles"] == 829 and usual["warnings"]
+    assert usual["particles"] == 829 and usual["coarse"] and not usual["warnings"]
     with pytest.raises(crumble.Error, match="end_tim"):
         crumble.check(template / "scene.toml", run={"end_tim": 1})
 
