@@ -31,11 +31,9 @@ impl Summary {
         let shown = self.measures.len().min(SHOWN);
         measure_lines(&self.measures[..shown], out)?;
         if self.measures.len() > shown {
-            writeln!(
-                out,
-                "             and {} more measures",
-                self.measures.len() - shown
-            )?;
+            let more = self.measures.len() - shown;
+            let s = if more == 1 { "" } else { "s" };
+            writeln!(out, "             and {more} more measure{s}")?;
         }
         if let Some(test) = &self.test {
             write!(out, "{test}")?;
