@@ -24,6 +24,7 @@ impl Value {
     pub(super) fn text(self) -> String {
         let size = self.si.abs();
         let (factor, unit) = match self.unit {
+            "m" if size < 1e-4 && size > 0.0 => (1e6, "um"),
             "m" if size < 1.0 => (1e3, "mm"),
             "s" if size < 1e-3 => (1e6, "us"),
             "s" if size < 1.0 => (1e3, "ms"),
@@ -64,4 +65,29 @@ fn sum(mark: &str, values: &[(&str, Value)]) -> Value {
     });
     let add = |sum: Value, term: Value| Value::new(sum.si + term.si, term.unit);
     terms.reduce(add).unwrap_or(Value::length(f64::NAN))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_sums_of_values() {
+        let values = [("x", Value::length(0.02)), ("gap", Value::length(1e-3))];
+        let fill = |text: &str| filled(text, "mass = 1", &values);
+        assert_eq!(fill("@weight@ a @x@ b"), "mass = 1 a 20 mm b");
+        assert_eq!(fill("@-0.5*x@, @gap-0.5*x@"), "-10 mm, -9 mm");
+        assert_eq!(fill("@100*x+0.5*gap@"), "2.0005 m");
+        assert!(fill("@y@").contains("NaN"));
+    }
+
+    #[test]
+    fn units_suit_sizes() {
+        let text = |si, unit| Value::new(si, unit).text();
+        assert_eq!(text(1e-5, "m"), "10 um");
+        assert_eq!(text(2e-3, "s"), "2 ms");
+        assert_eq!(text(4.2e-4, "kg"), "420 mg");
+        assert_eq!(text(0.02, "kg"), "20 g");
+        assert_eq!(text(PI, "rad/s"), "30 rpm");
+    }
 }

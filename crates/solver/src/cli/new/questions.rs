@@ -39,11 +39,7 @@ impl<R: BufRead, W: Write> Questions<R, W> {
         };
         let name = question.option.trim_start_matches('-');
         loop {
-            let asked = write!(
-                output,
-                "{name}, {} [{}]: ",
-                question.what, question.default
-            );
+            let asked = write!(output, "{name}, {} [{}]: ", question.what, question.default);
             // Who cannot see the question does not answer it.
             let _ = asked.and_then(|()| output.flush());
             let mut line = String::new();
@@ -51,7 +47,11 @@ impl<R: BufRead, W: Write> Questions<R, W> {
                 Ok(0) => return Err(ended(question)),
                 Err(error) => {
                     let problem = format!("the answer cannot be read: {error}");
-                    return Err(Diagnostic::input(question.option, problem, "give the option"));
+                    return Err(Diagnostic::input(
+                        question.option,
+                        problem,
+                        "give the option",
+                    ));
                 }
                 Ok(_) if line.trim().is_empty() => return Ok(None),
                 Ok(_) => match read(line.trim()) {

@@ -26,7 +26,7 @@ pub(super) enum Template {
     Chute,
     /// A lump between two jaws, one of which swings
     Crusher,
-    /// A drum with balls and lumps, which break by energy
+    /// A drum turns with balls and lumps: its power
     Mill,
     /// Pellets run out of a silo through a slot
     Silo,
@@ -121,7 +121,7 @@ impl Template {
             Self::Drop => 1500.0,
             Self::Chute | Self::Crusher | Self::Bending => 2050.0,
             Self::DropWeight | Self::Brazilian | Self::Compression => 2650.0,
-            Self::Mill => 2000.0,
+            Self::Mill => 2700.0,
             Self::Silo => 1200.0,
         }
     }
@@ -235,7 +235,10 @@ impl Template {
             Self::Mill => vec![
                 ("speed", Value::new(situation_si, "rad/s")),
                 ("radius", Value::length(drum_radius_m(body))),
-                ("ball_mass", Value::new(7800.0 * PI / 6.0 * (0.6 * size).powi(3), "kg")),
+                (
+                    "ball_mass",
+                    Value::new(7800.0 * PI / 6.0 * (0.6 * size).powi(3), "kg"),
+                ),
             ],
             Self::Silo => {
                 let fall = (40.0 * size / GRAVITY_M_S2).sqrt();
@@ -243,7 +246,7 @@ impl Template {
                     ("gap", Value::length(situation_si)),
                     ("fall", Value::new(fall, "s")),
                     ("fall_speed", Value::new(GRAVITY_M_S2 * fall, "m/s")),
-                    ("rate", Value::new(120.0 / fall, "/s")),
+                    ("rate", Value::new(160.0 / fall, "/s")),
                 ]
             }
             Self::Bending | Self::Brazilian | Self::Compression => vec![],
@@ -259,4 +262,32 @@ impl Template {
 
 fn drum_radius_m(body: &Measured) -> f64 {
     5.0 * body.size_m()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fill::filled;
+    use super::*;
+
+    /// Every mark of every text has a value.
+    #[test]
+    fn texts_are_filled() {
+        for template in Template::value_variants() {
+            let body = Measured {
+                extent_m: [0.03, 0.02, 0.01],
+                mass_kg: 0.01,
+                density_kg_m3: 2000.0,
+            };
+            let situation = template.situation(&body);
+            assert_eq!(
+                situation.as_ref().map(|known| known.option),
+                template.option()
+            );
+            let si = situation.map_or(0.0, |situation| situation.default_si);
+            let text = filled(template.text(), "mass = 1", &template.values(&body, si));
+            for wrong in ["@", "NaN", "inf"] {
+                assert!(!text.contains(wrong), "{template:?}: {text}");
+            }
+        }
+    }
 }
