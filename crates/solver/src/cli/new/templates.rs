@@ -38,7 +38,7 @@ pub(super) enum Template {
     Compression,
 }
 
-/// The number that defines the situation, in the order of its option, what it is, and its default.
+/// The number that defines the situation: its option, what it is, and its default.
 #[derive(Debug, Clone)]
 pub(super) struct Situation {
     pub(super) option: &'static str,
@@ -149,7 +149,7 @@ impl Template {
             Self::DropWeight => ("of the fall of the weight", &LENGTH, 0.3),
             Self::Chute => ("of the belt", &VELOCITY, 2.0),
             Self::Mill => ("of the drum", &ANGULAR_VELOCITY, 0.7 * critical_rad_s),
-            Self::Crusher => ("between the jaws", &LENGTH, size_m / 3.0),
+            Self::Crusher => ("between the jaws", &LENGTH, body.extent_m[0] / 3.0),
             Self::Silo => ("width of the slot", &LENGTH, 5.0 * size_m),
             Self::Bending | Self::Brazilian | Self::Compression => return None,
         };
