@@ -49,6 +49,8 @@ pub(super) fn new(arguments: &NewArguments) -> Result<()> {
     if fineness.is_rigid {
         // Neither bonds nor few spheres across matter to a clump.
         body.bonds.clear();
+        body.bond_radii.clear();
+        body.bond_lengths.clear();
         body.about.warnings.clear();
     }
     let drum_file = write_folder(arguments, &answers, &body)?;
