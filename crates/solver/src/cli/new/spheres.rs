@@ -1,5 +1,6 @@
 //! The body of a scene: its shape packed with spheres.
 
+use dem_io::body::ENOUGH_ACROSS;
 use dem_io::units::{show_length, significant};
 use dem_io::{Body, Diagnostic, Result, Surface};
 use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
@@ -14,8 +15,6 @@ const SPHERES_IN_CUBE: f64 = 1.85;
 const ATTEMPTS: usize = 4;
 /// Difference of diameters that matters.
 const NEAR: f64 = 0.03;
-/// Fewer across make a result coarse.
-const ENOUGH_ACROSS: f64 = 10.0;
 
 /// The body, and a remark where it is coarser than it should be.
 pub(super) fn packed(
