@@ -28,6 +28,9 @@ impl Summary {
         if !matches!(self.ended_by.as_str(), "end time" | "equilibrium") {
             writeln!(out, "ended by     {}", self.ended_by)?;
         }
+        if let Some(change) = &self.resumed_with {
+            writeln!(out, "resumed      {change}")?;
+        }
         let shown = self.measures.len().min(SHOWN);
         measure_lines(&self.measures[..shown], out)?;
         if self.measures.len() > shown {
