@@ -1,5 +1,5 @@
-//! README.md and the pages in doc/ are correct: their commands run, and the files, options and
-//! shapes that they name exist.
+//! README.md and the pages in doc/ and doc/inside/ are correct: their commands run, and the files,
+//! options and shapes that they name exist.
 
 use std::fs;
 use std::path::Path;
@@ -12,19 +12,19 @@ const PAGES: [&str; 16] = [
     "README.md",
     "doc/README.md",
     "doc/packing.md",
-    "doc/packing-method.md",
+    "doc/inside/packing-method.md",
     "doc/running.md",
     "doc/calibration.md",
     "doc/measured-curves.md",
     "doc/gallery.md",
-    "doc/development.md",
+    "doc/inside/development.md",
     "doc/bulk.md",
     "doc/dynamic-tests.md",
     "doc/laboratory.md",
-    "doc/performance.md",
+    "doc/inside/performance.md",
     "doc/pressing.md",
     "doc/process.md",
-    "doc/round-robin.md",
+    "doc/inside/round-robin.md",
 ];
 
 fn read(page: &str) -> String {
@@ -41,6 +41,11 @@ fn files_in(folder: &str, ending: &str) -> Vec<String> {
         .collect();
     found.sort();
     found
+}
+
+/// The pages for users and those about the inside, README.md excepted.
+fn pages() -> Vec<String> {
+    [files_in("doc", ".md"), files_in("doc/inside", ".md")].concat()
 }
 
 /// The lines of all code blocks in this language.
@@ -218,7 +223,7 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
 
 #[test]
 fn links_lead_to_files() {
-    let mut pages = files_in("doc", ".md");
+    let mut pages = pages();
     pages.push("README.md".to_owned());
     let mut files = 0;
     for page in &pages {
@@ -299,11 +304,8 @@ fn options_exist() {
         }
     }
     assert!(named.len() >= 20, "{named:?}");
-    let pages: String = files_in("doc", ".md")
-        .iter()
-        .map(|page| read(page))
-        .collect();
-    named.extend(options(&pages));
+    let all: String = pages().iter().map(|page| read(page)).collect();
+    named.extend(options(&all));
     for option in known {
         let told_by_help = ["--help", "--version"].contains(&option.as_str());
         assert!(
@@ -333,7 +335,7 @@ fn the_readme_is_short() {
 #[test]
 fn the_table_of_contents_names_every_page() {
     let contents = read("doc/README.md");
-    for page in files_in("doc", ".md") {
+    for page in pages() {
         let name = page.trim_start_matches("doc/");
         let link = format!("]({name})");
         assert!(
