@@ -8,9 +8,15 @@ use std::process::Command;
 use super::{DEM_PACK, DEM_RUN, dem_pack, dem_run, root};
 
 /// The pages whose commands are run and whose options must exist.
-const PAGES: [&str; 16] = [
+const PAGES: [&str; 22] = [
     "README.md",
     "doc/README.md",
+    "doc/tablet.md",
+    "doc/transfer-chute.md",
+    "doc/sphere-size.md",
+    "doc/verdict.md",
+    "doc/toml.md",
+    "doc/glossary.md",
     "doc/packing.md",
     "doc/inside/packing-method.md",
     "doc/running.md",
@@ -63,6 +69,21 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     found
 }
 
+/// What the copies of scenes and studies have in place of something that takes longer.
+const SHORTER: [(&str, &str, &str); 3] = [
+    (
+        "data/scenes/transfer-chute.toml",
+        "end_time = \"2.8 s\"",
+        "end_time = \"0.5 s\"",
+    ),
+    ("data/studies/liner.toml", "[1, 2, 3, 4, 5, 6]", "[1, 2]"),
+    (
+        "data/studies/tablet-drop.toml",
+        "tolerance = \"0.4 m\"",
+        "tolerance = \"3 m\"",
+    ),
+];
+
 /// Copies the shapes, scenes and bodies. A shape with few facets replaces the rock, to save time.
 fn copy_data(to: &Path) {
     let shapes = to.join("data/shapes");
@@ -71,6 +92,7 @@ fn copy_data(to: &Path) {
         ("filter-cake.stl", "filter-cake.stl"),
         ("rock.stl", "c-shape.stl"),
         ("bending-sample.stl", "bending-sample.stl"),
+        ("tablet.stl", "tablet.stl"),
     ] {
         let original = root().join("data/shapes").join(stands_in);
         fs::copy(original, shapes.join(name)).unwrap();
@@ -80,6 +102,7 @@ fn copy_data(to: &Path) {
         "data/bodies",
         "data/studies",
         "data/measured",
+        "data/materials",
     ] {
         let copies = to.join(name);
         fs::create_dir_all(&copies).unwrap();
@@ -87,6 +110,12 @@ fn copy_data(to: &Path) {
             let file = file.unwrap();
             fs::copy(file.path(), copies.join(file.file_name())).unwrap();
         }
+    }
+    for (name, whole, short) in SHORTER {
+        let file = to.join(name);
+        let text = fs::read_to_string(&file).unwrap();
+        assert!(text.contains(whole), "{name} lacks {whole}");
+        fs::write(&file, text.replace(whole, short)).unwrap();
     }
 }
 
@@ -103,6 +132,7 @@ fn shortened(line: &str) -> Option<String> {
         .replace(" 2mm..3mm", " 4mm..5mm")
         .replace(" 5mm..7mm", " 7mm..9mm")
         .replace(" -o cake.toml --", " -o cake.toml --packings 2 --")
+        .replace(" -o tablet.toml --", " -o tablet.toml --packings 2 --")
         .replace(" 4.6mm..5.1mm", " 10mm..12mm")
         .replace("/lumps.toml", "/lumps.toml --set run.end_time=0.1")
         .replace(
@@ -195,6 +225,28 @@ fn commands_for_calibration_run() {
         "four-point-bending-out/report.html",
     ];
     run_commands("doc/calibration.md", 4, &made);
+}
+
+#[test]
+fn commands_for_the_tablet_run() {
+    let made = [
+        "measured.json",
+        "tablet.toml",
+        "tablet.html",
+        "tablet-drop-out/report.html",
+        "tablet-drop-sweep/sweep.html",
+    ];
+    run_commands("doc/tablet.md", 5, &made);
+}
+
+#[test]
+fn commands_for_the_transfer_chute_run() {
+    let made = [
+        "start.png",
+        "transfer-chute-out/report.html",
+        "liner-sweep/sweep.html",
+    ];
+    run_commands("doc/transfer-chute.md", 3, &made);
 }
 
 #[test]
