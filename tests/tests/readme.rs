@@ -420,8 +420,8 @@ fn the_page_of_studies_names_every_study() {
 
 /// The words of all tables and pictures that `dem-pages` writes.
 #[test]
-fn the_gallery_names_every_command_that_writes_tables() {
-    let gallery = read("doc/gallery.md");
+fn development_names_every_command_that_writes_tables() {
+    let page = read("doc/inside/development.md");
     let program = read("crates/pages/src/main.rs");
     let (_, commands) = program.split_once("const COMMANDS").unwrap();
     let (commands, _) = commands.split_once("];").unwrap();
@@ -431,8 +431,8 @@ fn the_gallery_names_every_command_that_writes_tables() {
     let words: Vec<&str> = lines.map(|line| line.split('"').next().unwrap()).collect();
     assert!(words.len() >= 25, "{words:?}");
     for words in words {
-        let named = [" -- ", "`"].map(|before| gallery.contains(&format!("{before}{words}`")));
-        assert!(named.contains(&true), "doc/gallery.md lacks {words}");
+        let named = [" -- ", "`"].map(|before| page.contains(&format!("{before}{words}`")));
+        assert!(named.contains(&true), "doc/inside/development.md lacks {words}");
     }
 }
 
