@@ -5,10 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::body::files::body_files;
 use dem_io::body::write_body;
-use dem_io::write_target::{need_folder_of, refuse_to_replace};
+use dem_io::write_target::refuse_to_replace;
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::BodyReport;
 use dem_pack::cli::{Recipe, thread_pool};
+use dem_results::folder::make_folder;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -39,9 +40,15 @@ impl StoredBody {
         serde_json::to_string(&self.0.about).unwrap_or_default()
     }
 
-    /// Writes it; the ending of the name gives the format.
+    /// A sentence on few particles across its thinnest part. None: there are enough, or their
+    /// number is unknown.
+    fn coarse(&self) -> Option<String> {
+        self.0.about.coarse()
+    }
+
+    /// Writes it; the ending of the name gives the format. Its folder is made.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| write_body(&self.0, &path))
+        py.detach(|| make_folder_of(&path).and_then(|()| write_body(&self.0, &path)))
             .map_err(|error| python_error(py, &error))
     }
 }
@@ -83,9 +90,8 @@ fn packed(
 ) -> Result<(Body, BodyReport)> {
     let recipe = Recipe::parse(arguments)?;
     if let Some(output) = output {
-        let files = body_files(output)?;
-        files.iter().try_for_each(|file| need_folder_of(file))?;
-        refuse_to_replace(&files, &recipe.files())?;
+        refuse_to_replace(&body_files(output)?, &recipe.files())?;
+        make_folder_of(output)?;
     }
     let (body, report) = recipe.make(recipe.seed(), &|stage, done| {
         told.say(done.clamp(0.0, 1.0), stage.to_owned());
@@ -98,4 +104,12 @@ fn packed(
         write_body(&body, output)?;
     }
     Ok((body, report))
+}
+
+/// Makes the folder of a file, with those that it is in.
+fn make_folder_of(file: &Path) -> Result<()> {
+    match file.parent().filter(|folder| *folder != Path::new("")) {
+        Some(folder) => make_folder(folder),
+        None => Ok(()),
+    }
 }

@@ -35,10 +35,17 @@ fn _crumble(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Runs the command line of dem-run, without the name of the program. Calls `tell` with the
-/// fraction done and a text. Ctrl-C stops the run; its results are written.
+/// Runs the command line of dem-run, without the name of the program. `command` is what starts the
+/// program in a process of its own: a file and its first arguments. Calls `tell` with the fraction
+/// done and a text. Ctrl-C stops the run; its results are written.
 #[pyfunction]
-fn run(py: Python<'_>, arguments: Vec<OsString>, tell: Option<Bound<'_, PyAny>>) -> PyResult<()> {
+fn run(
+    py: Python<'_>,
+    command: Vec<String>,
+    arguments: Vec<OsString>,
+    tell: Option<Bound<'_, PyAny>>,
+) -> PyResult<()> {
+    starts_by(&command);
     let line = std::iter::once(OsString::from("dem-run")).chain(arguments);
     let arguments = Arguments::parsed(line).map_err(|error| python_error(py, &error))?;
     let interrupt = Interrupt::default();
@@ -47,8 +54,8 @@ fn run(py: Python<'_>, arguments: Vec<OsString>, tell: Option<Bound<'_, PyAny>>)
         interrupt.ask();
     };
     interruptible(py, tell.as_ref(), &told, &stop, || {
-        dem_run::cli::run(&arguments, &interrupt, &|so_far| {
-            told.say(so_far.fraction, so_far.to_string());
+        dem_run::cli::run(&arguments, &interrupt, &|fraction, text| {
+            told.say(fraction, text.to_string());
         })
     })
 }
@@ -72,16 +79,21 @@ fn time_s(py: Python<'_>, text: &str) -> PyResult<f64> {
     quantity(text, &TIME).map_err(|error| python_error(py, &error))
 }
 
-/// The program `dem-pack` or `dem-run` with these arguments. `command` is what starts it: a file
-/// and its first arguments. Returns the exit code.
+/// The program `dem-pack` or `dem-run` with these arguments. `command` is what starts it, as for
+/// `run`. Returns the exit code.
 #[pyfunction]
 fn program(py: Python<'_>, name: &str, command: Vec<String>, arguments: Vec<OsString>) -> u8 {
-    if let Some((file, first)) = command.split_first() {
-        set_own_command(PathBuf::from(file), first.to_vec());
-    }
+    starts_by(&command);
     let line = std::iter::once(OsString::from(name)).chain(arguments);
     py.detach(|| match name {
         "dem-pack" => dem_pack::cli::program(line),
         _ => dem_run::cli::program(line),
     })
+}
+
+/// Says what starts the program: a study runs each of its runs in a process.
+fn starts_by(command: &[String]) {
+    if let Some((file, first)) = command.split_first() {
+        set_own_command(PathBuf::from(file), first.to_vec());
+    }
 }

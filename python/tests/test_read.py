@@ -2,6 +2,7 @@
 
 import csv
 import gc
+import json
 import math
 import shutil
 import warnings
@@ -60,7 +61,35 @@ def test_summary_measures_and_verdict(dropped: crumble.Results) -> None:
     assert dropped.measures["largest"] == dropped.series["largest"].iloc[-1]
     # Peaks are recorded between the rows of the series, too.
     assert dropped.measures["push"] >= dropped.series["push_n"].max() > 0
-    assert not dropped.verdict.sound and len(dropped.verdict.warnings) == 1
+    assert dropped.units == {"largest": "", "push": "N"}
+    verdict = dropped.verdict
+    assert (verdict.word, verdict.sound, len(verdict.warnings)) == ("doubtful", False, 1)
+    assert "fewer than 10 the result reflects the particles" in verdict.coarse[0]
+
+
+def test_verdicts_of_all_versions_are_read(tmp_path: Path) -> None:
+    why = ("a bond is long",)
+    sound, doubtful = crumble.Verdict("sound"), crumble.Verdict("doubtful", why)
+    for summary, wanted in [
+        ({"verdict": {"sound": True, "warnings": []}}, sound),
+        ({"verdict": {"sound": False, "warnings": why}}, doubtful),
+        ({"verdict": {"word": "sound", "sound": True, "warnings": []}}, sound),
+        ({"verdict": {"word": "doubtful", "sound": False, "warnings": why}}, doubtful),
+        (
+            {"verdict": {"word": "coarse", "sound": False, "warnings": [], "coarse": why}},
+            crumble.Verdict("coarse", (), why),
+        ),
+        # A run that did not reach its end.
+        (
+            {"problem": "it burst", "verdict": {"sound": True, "warnings": why}},
+            crumble.Verdict("doubtful", ("it burst", *why)),
+        ),
+        ({"problem": why[0], "verdict": {"sound": False, "warnings": why}}, doubtful),
+        ({"problem": why[0]}, doubtful),
+    ]:
+        (tmp_path / "summary.json").write_text(json.dumps(summary))
+        assert crumble.read(tmp_path).verdict == wanted
+        assert wanted.sound == (wanted.word == "sound")
 
 
 def test_frames_are_those_that_vtk_reads(dropped: crumble.Results) -> None:

@@ -6,6 +6,7 @@ import subprocess
 import threading
 import time
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from crumble._errors import in_python, warn_of_doubts
 from crumble._set import overrides, toml
 
 SPIN = ROOT / "data" / "scenes" / "spinning-bar.toml"
+CANTILEVER = ROOT / "data" / "scenes" / "cantilever.toml"
 
 
 def test_results_are_those_of_the_program(template: Path, dropped: crumble.Results, tmp_path: Path) -> None:
@@ -45,7 +47,7 @@ def test_settings_reach_the_scene(tmp_path: Path) -> None:
     assert scene["run.safety_factor"] == "0.5"
     assert results.summary["simulated_s"] == pytest.approx(0.01, rel=1e-2)
     assert results.summary["threads"] == 1
-    assert results.verdict == crumble.Verdict(True, ())
+    assert results.verdict == crumble.Verdict("sound")
 
 
 def test_values_of_python_as_toml() -> None:
@@ -114,6 +116,10 @@ def test_bad_scenes_are_refused_with_the_message_of_the_program(
     with pytest.raises(crumble.Error):
         crumble.run(tmp_path / "none.toml", tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").touch()
+    for out, remedy in [("file", "this is a file, where a folder is needed"), ("file/out", "is not a folder")]:
+        with pytest.raises(crumble.Error, match=remedy):
+            crumble.run(SPIN, tmp_path / out)
 
 
 def test_progress_is_told_and_nothing_is_printed(
@@ -154,6 +160,18 @@ def test_python_goes_on_during_a_run(template: Path, tmp_path: Path) -> None:
     assert counts[0] > 20 * results.summary["wall_s"]
 
 
+def test_runs_side_by_side_give_the_same(tmp_path: Path) -> None:
+    def spin(out: str) -> bytes:
+        results = crumble.run(SPIN, tmp_path / out, threads=1, run={"end_time": f"{out[-1]} ms"})
+        return (results.folder / "series.csv").read_bytes()
+
+    # Folders whose parents are made, at the same time.
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(spin, [f"together/far/{number}" for number in (5, 6, 7, 8)]))
+    assert together == [spin(f"alone/{number}") for number in (5, 6, 7, 8)]
+    assert len(set(together)) == 4
+
+
 def test_ctrl_c_keeps_the_results_and_the_run_goes_on(
     template: Path, dropped: crumble.Results, tmp_path: Path
 ) -> None:
@@ -168,7 +186,7 @@ def test_ctrl_c_keeps_the_results_and_the_run_goes_on(
     with pytest.raises(KeyboardInterrupt):
         crumble.run(scene, out, progress=once)
     half = crumble.read(out)
-    assert half.summary["ended_by"] == "interruption" and not half.verdict.sound
+    assert half.summary["ended_by"] == "interruption" and half.verdict.word == "doubtful"
     assert 0 < len(half.series) < len(dropped.series) and len(half.frames) > 2
     assert half.verdict.warnings[0].startswith("interrupted")
     with warnings.catch_warnings():
@@ -185,7 +203,30 @@ def test_an_unstable_run_raises_and_has_results(tmp_path: Path) -> None:
         crumble.run(scene, tmp_path / "out", body=body, run={"time_step": "1 ms"}, force_step=True)
     assert caught.value.exit_code == 3
     results = crumble.read(tmp_path / "out")
-    assert results.summary["ended_by"] == "instability" and not results.verdict.sound
+    assert results.summary["ended_by"] == "instability" and results.verdict.word == "doubtful"
+
+
+def test_a_coarse_run_is_not_warned_of(template: Path, tmp_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        results = crumble.run(template / "scene.toml", tmp_path / "out", run={"end_time": "0.01 ms"})
+    assert (results.verdict.word, results.verdict.sound, results.verdict.warnings) == ("coarse", False, ())
+    [reason] = results.verdict.coarse
+    assert "only about 4.4 particles across the thinnest part" in reason
+
+
+def test_a_doubtful_run_is_one_warning(tmp_path: Path) -> None:
+    with pytest.warns(crumble.DoubtfulResult) as caught:
+        results = crumble.run(
+            CANTILEVER,
+            tmp_path / "out",
+            run={"integrator": "static"},
+            bonds={"steel": {"radius_factor": 1.5}},
+        )
+    assert results.verdict.word == "doubtful"
+    [reason] = results.verdict.warnings
+    assert [str(one.message) for one in caught] == [f"{CANTILEVER}: {reason}"]
+    assert reason == "tip_deflection is outside its tolerance" and caught[0].filename == __file__
 
 
 def test_several_doubts_are_one_warning() -> None:
@@ -201,7 +242,7 @@ def test_check_is_a_dry_run(template: Path) -> None:
     # The end of the run is a whole number of steps.
     half_s = usual["time_step_s"] / 2
     assert plan["time_step_s"] == pytest.approx(half_s, rel=1 / usual["steps"])
-    assert usual["particles"] == 829 and usual["warnings"]
+    assert usual["particles"] == 829 and usual["coarse"] and not usual["warnings"]
     with pytest.raises(crumble.Error, match="end_tim"):
         crumble.check(template / "scene.toml", run={"end_tim": 1})
 

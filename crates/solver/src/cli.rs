@@ -48,9 +48,9 @@ use self::pool::in_pool;
 use self::report::write_report;
 use self::run_scene::run_scene;
 use crate::interrupt::Interrupt;
-use dem_runner::SoFar;
 
 pub use self::arguments::Arguments;
+pub use self::progress::Tell;
 
 /// The program: does what its command line says, reports an error on standard error, and returns
 /// the exit code. The first of `given` is the name of the program. At Ctrl-C a run stops and keeps
@@ -70,7 +70,7 @@ pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
         take_size_limits_as_errors();
         // Without the handler, the only loss is the checkpoint of an interrupted run.
         let _ = ctrlc::set_handler(at_interrupt);
-        run(&arguments, &interrupt, &|_| {})
+        run(&arguments, &interrupt, &|_, _| {})
     });
     match done {
         Ok(()) => 0,
@@ -81,13 +81,9 @@ pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Does what was requested. `interrupt` tells a run to stop; `tell` is called from time to time
-/// with how far the run of a scene has come.
-pub fn run(
-    arguments: &Arguments,
-    interrupt: &Interrupt,
-    tell: &(dyn Fn(&SoFar) + Sync),
-) -> Result<()> {
+/// Does what was requested. `interrupt` tells a run to stop; `tell` hears how far the run of a scene
+/// or a study has come.
+pub fn run(arguments: &Arguments, interrupt: &Interrupt, tell: Tell<'_>) -> Result<()> {
     match &arguments.command {
         Some(Command::Check {
             scene,
@@ -107,7 +103,7 @@ pub fn run(
         Some(Command::Calibrate(arguments)) => calibrate::calibrate(arguments, interrupt),
         Some(Command::Picture(arguments)) => in_pool(None, |_| picture::write_picture(arguments)),
         Some(Command::Report { folder }) => write_report(folder),
-        Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
+        Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt, tell),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
         Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
         Some(Command::Man) => print_man_page(Arguments::command()),

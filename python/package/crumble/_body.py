@@ -80,13 +80,20 @@ class Body:
 
     @property
     def warnings(self) -> list[str]:
-        """What makes it doubtful. Empty: sound."""
+        """What makes it doubtful."""
         found: list[str] = self.about["warnings"]
         return found
 
+    @property
+    def coarse(self) -> str | None:
+        """A sentence on few particles across its thinnest part, where results reflect the particles
+        rather than the material. None: there are enough, or their number is not known.
+        """
+        return self._stored.coarse()
+
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes it; the ending gives the format: .vtp, .data (LAMMPS), .csv, .txt. An existing file
-        is replaced.
+        is replaced, a missing folder made.
         """
         self._stored.write(path)
         self.path = Path(path)
@@ -121,8 +128,8 @@ def pack(
 
     `diameter` is as for `--diameter`: "2.5mm", "2mm..3mm", "lognormal:2.5mm,0.3mm,1.5mm..4mm",
     "sieve:FILE.csv", ...; a number is metres. The settings are the options of `dem-pack` (see
-    `doc/packing.md`), their defaults are those of the program. `out` is the file to write; without
-    it the body is in memory only. `progress=True` shows the progress on standard error; a function
+    `doc/packing.md`), their defaults are those of the program. `out` is the file to write, whose
+    folder is made; without it the body is in memory only. `progress=True` shows the progress on standard error; a function
     is called with the fraction done and the name of the stage.
 
     Raises `Error` with the message of the program, warns `DoubtfulResult` with the warnings of

@@ -52,6 +52,8 @@ def in_python(text: str) -> str:
         name = option[1]
         if name in FLAGS:
             return name.replace("-", "_") + "=True"
+        if name == "yes":  # of `dem-run sweep`, for command() only
+            return option[0]
         return "out" if name == "output" else name.replace("-", "_")
 
     return re.sub(r"(?<![\w/.-])--([a-z][a-z-]*[a-z])(?![\w/.])", argument, text)

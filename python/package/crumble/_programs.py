@@ -13,11 +13,14 @@ from crumble._errors import Error
 PROGRAMS = ("dem-pack", "dem-run")
 
 
+def own_command(name: str) -> list[str]:
+    """What starts the program in a process of its own."""
+    return [sys.executable, "-m", "crumble", name]
+
+
 def start(name: str, arguments: list[str]) -> NoReturn:
     """Is the program: never returns."""
-    # With these words a program starts itself again: a study runs each of its runs in a process.
-    command = [sys.executable, "-m", "crumble", name]
-    sys.exit(_crumble.program(name, command, arguments))
+    sys.exit(_crumble.program(name, own_command(name), arguments))
 
 
 def dem_pack() -> NoReturn:
@@ -40,7 +43,7 @@ def command(*words: str | os.PathLike[str]) -> str:
     if not line or line[0] not in PROGRAMS:
         raise ValueError(f"the first word is {' or '.join(PROGRAMS)}")
     done = subprocess.run(
-        [sys.executable, "-m", "crumble", *line],
+        [*own_command(line[0]), *line[1:]],
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,

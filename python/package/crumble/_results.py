@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from crumble._errors import Error
+from crumble._files import read_json, read_table
 from crumble._frames import Frames
 
 if TYPE_CHECKING:
@@ -20,14 +20,25 @@ COUNTS = ("count", "broken_bonds")
 """Quantities that are whole numbers at one time."""
 
 
+Word = Literal["sound", "coarse", "doubtful"]
+"""Nothing speaks against it; smaller spheres would give another result; something is wrong."""
+
+
 @dataclass(frozen=True)
 class Verdict:
     """Whether a result can be trusted."""
 
-    sound: bool
-    """False: doubtful."""
-    warnings: tuple[str, ...]
+    word: Word
+    """The verdict in one word."""
+    warnings: tuple[str, ...] = ()
     """Why it is doubtful, a sentence each."""
+    coarse: tuple[str, ...] = ()
+    """Why it depends on the size of the spheres, a sentence each."""
+
+    @property
+    def sound(self) -> bool:
+        """Whether the word is "sound"."""
+        return self.word == "sound"
 
 
 class Results:
@@ -43,14 +54,7 @@ class Results:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """`summary.json`: results, inputs with hashes, errors, verdict."""
-        try:
-            text = (self.folder / "summary.json").read_text(encoding="utf-8")
-        except OSError as problem:
-            why = "there is no summary.json in it, so this is not the folder of a run"
-            place = str(self.folder)
-            raise Error(f"{place}: {why}", 2, place, why) from problem
-        summary: dict[str, Any] = json.loads(text)
-        return summary
+        return read_json(self.folder, "summary.json", "a run")
 
     @property
     def verdict(self) -> Verdict:
@@ -58,17 +62,27 @@ class Results:
         doubtful.
         """
         problem = self.summary.get("problem")
-        said = self.summary.get("verdict") or {"sound": False, "warnings": []}
-        why = [problem] if problem else []
-        return Verdict(said["sound"] and not why, tuple([*why, *said["warnings"]]))
+        said = self.summary.get("verdict") or {"sound": False}
+        # Runs of earlier versions were sound or doubtful.
+        word: Word = said.get("word") or ("sound" if said["sound"] else "doubtful")
+        why = [*([problem] if problem else []), *said.get("warnings", [])]
+        # A run that failed has its problem among the warnings, too.
+        warnings = tuple(dict.fromkeys(why))
+        return Verdict("doubtful" if problem else word, warnings, tuple(said.get("coarse", [])))
 
     @property
     def measures(self) -> dict[str, float | None]:
         """The value of each measure of the scene: an `int` for a number of fragments or bonds at
-        one time. None: it has no value.
+        one time. None: it has no value. `units` has their units.
         """
         measures = self.summary.get("measures") or {}
         return {name: self._whole(name, measure["value"]) for name, measure in measures.items()}
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The SI unit of each measure: "N", "m/s", ...; "" for plain numbers."""
+        measures = self.summary.get("measures") or {}
+        return {name: measure["unit"] for name, measure in measures.items()}
 
     def _whole(self, name: str, value: float | None) -> float | None:
         """A number of things at one time as an `int`."""
@@ -86,20 +100,14 @@ class Results:
 
     def table(self, name: str) -> pd.DataFrame:
         """`NAME.csv`, with `-` for `_` where there is no other such file."""
-        # Imported here, so that the programs start without it.
-        import pandas as pd
-
         file = self.folder / f"{name}.csv"
         if not file.is_file():
             file = file.with_stem(name.replace("_", "-"))
         if not file.is_file():
             have = ", ".join(self.tables) or "none"
-            raise self._missing(file.name, f"there is no such table; the run wrote {have}")
-        # Every number to the bit that was written: what newer versions do in any case.
-        is_older = tuple(int(part) for part in pd.__version__.split(".")[:2]) < (3, 1)
-        options: dict[str, Any] = {"float_precision": "round_trip"} if is_older else {}
-        table: pd.DataFrame = pd.read_csv(file, **options)
-        return table
+            place, problem = str(file), f"there is no such table; the run wrote {have}"
+            raise Error(f"{place}: {problem}", 2, place, problem)
+        return read_table(file)
 
     @cached_property
     def series(self) -> pd.DataFrame:
@@ -158,10 +166,6 @@ class Results:
     def frames(self) -> Frames:
         """Particles, bonds and walls at the times of `frames.pvd`, read one by one."""
         return Frames.of(self.folder)
-
-    def _missing(self, file: str, problem: str) -> Error:
-        place = str(self.folder / file)
-        return Error(f"{place}: {problem}", 2, place, problem)
 
     def __repr__(self) -> str:
         return f"<Results in {self.folder}>"

@@ -11,7 +11,7 @@ from typing import Any, Union
 from crumble import _crumble
 from crumble._body import Body
 from crumble._errors import arguments_of_python, warn_of_doubts
-from crumble._programs import command
+from crumble._programs import command, own_command
 from crumble._progress import Progress, shown
 from crumble._results import Results
 from crumble._set import Value, overrides
@@ -36,7 +36,7 @@ def run(
 ) -> Results:
     """Runs a scene, as `dem-run` does, and returns its results.
 
-    `out` is the folder of the results; without it, `folder` in `[output]` of the scene, else the
+    `out` is the folder of the results, made with those that it is in; without it, `folder` in `[output]` of the scene, else the
     scene's name with -out in the working directory. A folder that holds results is refused unless
     `force` (they are replaced) or `resume` (the run goes on from its checkpoint).
 
@@ -50,9 +50,10 @@ def run(
     accepts a time step above the largest stable one. `progress=True` shows the progress on
     standard error; a function is called with the fraction done and a text.
 
-    Raises `Error` with the message of the program; warns `DoubtfulResult` with all
-    reasons where the verdict is doubtful. Ctrl-C stops the run after its present step, writes its results and a checkpoint,
-    and raises `KeyboardInterrupt`; `read` opens the folder, `resume=True` goes on.
+    Raises `Error` with the message of the program; warns `DoubtfulResult` with all reasons where
+    the verdict is doubtful. Ctrl-C stops the run after its present step, writes its results and a
+    checkpoint, and raises `KeyboardInterrupt`; `read` opens the folder, `resume=True` goes on.
+    Several threads of Python may call it at a time, with `threads=1` for as many runs as cores.
     """
     changes = overrides(set, tables)
     with arguments_of_python():
@@ -63,9 +64,9 @@ def run(
             arguments.append(name)
     arguments += _scene_arguments(changes, body, material, threads, force_step)
     with arguments_of_python(), shown(progress) as tell:
-        _crumble.run([*arguments, "--", os.fspath(scene)], tell)
+        _crumble.run(own_command("dem-run"), [*arguments, "--", os.fspath(scene)], tell)
     results = Results(Path(folder))
-    if not results.verdict.sound:
+    if results.verdict.word == "doubtful":
         warn_of_doubts(os.fspath(scene), results.verdict.warnings)
     return results
 

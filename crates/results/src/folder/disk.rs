@@ -9,7 +9,7 @@ use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::explain;
 
 /// Makes a folder, with those that it is in, unless it exists.
-pub(super) fn make_folder(path: &Path) -> Result<()> {
+pub fn make_folder(path: &Path) -> Result<()> {
     if let Some(parent) = path.parent().filter(|parent| !parent.exists()) {
         fs::create_dir_all(parent).map_err(|error| explain(parent, &error))?;
     }

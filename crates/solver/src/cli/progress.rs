@@ -15,6 +15,9 @@ use super::pace::{Pace, left_in_words};
 /// Runs that take less have no lines, s; others have the first one by then.
 const SHORT_S: f64 = 30.0;
 
+/// Called from time to time with the fraction done, 0 to 1, and a text.
+pub type Tell<'a> = &'a (dyn Fn(f64, &dyn Display) + Sync);
+
 /// Shows how far a run has come.
 pub(super) struct ShownProgress {
     bar: ProgressBar,

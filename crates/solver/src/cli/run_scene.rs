@@ -20,7 +20,7 @@ use dem_terminal::standard_output::{
 };
 
 use super::as_run;
-use super::progress::ShownProgress;
+use super::progress::{ShownProgress, Tell};
 use super::scene_arguments::SceneArguments;
 use crate::interrupt::Interrupt;
 use dem_engine::threads::keep_awake;
@@ -98,7 +98,7 @@ pub(super) fn run_scene(
     arguments: &RunArguments,
     threads: usize,
     interrupt: &Interrupt,
-    tell: &dyn Fn(&SoFar),
+    tell: Tell<'_>,
 ) -> Result<()> {
     let (scene, bodies) = arguments.scene.read()?;
     let path = folder_to_open(arguments, &scene)?;
@@ -122,7 +122,7 @@ pub(super) fn run_scene(
     let shown = ShownProgress::new(arguments.quiet);
     let progress = |so_far: &SoFar| {
         shown.tell(so_far);
-        tell(so_far);
+        tell(so_far.fraction, so_far);
     };
     let outcome = interrupt.run_interruptible(|interrupted| {
         let mut settings = RunSettings {

@@ -20,7 +20,8 @@ use dem_scene::text_of;
 use dem_terminal::progress::progress_bar;
 
 use self::results::{list, say, write_files};
-use super::progress::Log;
+use super::pool::refuse_threads;
+use super::progress::{Log, Tell};
 use crate::interrupt::Interrupt;
 use dem_laboratory::test_result::T10;
 use dem_study::collect::outcome;
@@ -42,6 +43,9 @@ pub(super) struct SweepArguments {
     /// Number of simultaneous runs. More than one disturb each other's times
     #[arg(long, value_name = "N", default_value_t = 1)]
     jobs: usize,
+    /// Number of threads of each run; that of the study unless given
+    #[arg(long, value_name = "N")]
+    threads: Option<u32>,
     /// Resume an interrupted sweep: finished runs are kept
     #[arg(long, conflicts_with = "force")]
     resume: bool,
@@ -73,10 +77,11 @@ pub(super) struct SweepArguments {
 }
 
 /// Runs the study, lists its runs or collects them, and prints the result. Runs that failed or are
-/// missing are an error, once the tables of the others are written.
-pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<()> {
+/// missing are an error, once the tables of the others are written. `tell` is called with how far
+/// the runs have come.
+pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt, tell: Tell<'_>) -> Result<()> {
     let mut sweep = Sweep::prepared(options)?;
-    let Some(mut table) = sweep.table(options, interrupt)? else {
+    let Some(mut table) = sweep.table(options, interrupt, tell)? else {
         return Ok(());
     };
     if options.list {
@@ -120,6 +125,10 @@ impl Sweep {
             need_folder_of(target).map_err(|error| error.within("--write"))?;
         }
         let mut study = read_study(&options.study)?;
+        if let Some(threads) = options.threads {
+            refuse_threads(threads as usize, "leave it out for those of the study")?;
+            study.threads = threads;
+        }
         let scene_text = text_of(&study.scene, "a scene")
             .map_err(|error| error.within(&format!("{}: scene", study.source)))?;
         // What is wrong with it is said when the scenes of all runs are checked.
@@ -162,6 +171,7 @@ impl Sweep {
         &mut self,
         options: &SweepArguments,
         interrupt: &Interrupt,
+        tell: Tell<'_>,
     ) -> Result<Option<SweepTable>> {
         loop {
             let Self {
@@ -170,7 +180,7 @@ impl Sweep {
                 folder,
                 ..
             } = self;
-            let Some(outcomes) = outcomes_of(options, study, all, folder, interrupt)? else {
+            let Some(outcomes) = outcomes_of(options, study, all, folder, interrupt, tell)? else {
                 return Ok(None);
             };
             let table = SweepTable::new(study, all, &outcomes, &self.references, self.looked_for);
@@ -256,11 +266,12 @@ fn outcomes_of(
     all: &[Run],
     folder: &SweepFolder,
     interrupt: &Interrupt,
+    tell: Tell<'_>,
 ) -> Result<Option<Vec<Vec<Outcome>>>> {
     let mut all_jobs = jobs(all, study.repeats());
     let is_run_here = !options.collect && !options.list;
     if is_run_here {
-        do_what_is_left(options, study, all, &all_jobs, folder, interrupt)?;
+        do_what_is_left(options, study, all, &all_jobs, folder, interrupt, tell)?;
     }
     let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
     read(study, all, &all_jobs, folder, &mut outcomes);
@@ -274,7 +285,7 @@ fn outcomes_of(
         }
     }
     if is_run_here {
-        do_what_is_left(options, study, all, &further, folder, interrupt)?;
+        do_what_is_left(options, study, all, &further, folder, interrupt, tell)?;
     }
     read(study, all, &further, folder, &mut outcomes);
     Ok(Some(outcomes))
@@ -384,6 +395,7 @@ fn do_what_is_left(
     jobs: &[Job],
     folder: &SweepFolder,
     interrupt: &Interrupt,
+    tell: Tell<'_>,
 ) -> Result<()> {
     let runs = folder.runs();
     let todo: Vec<Job> = (jobs.iter().copied())
@@ -393,17 +405,21 @@ fn do_what_is_left(
     let bar = progress_bar(options.quiet, todo.len(), template);
     let is_logged = !options.quiet && !std::io::stderr().is_terminal();
     let log = RefCell::new(Log::new("sweep "));
-    let tell = |done: usize| {
+    let show = |done: usize| {
         bar.set_position(done as u64);
-        if is_logged && !todo.is_empty() {
-            let fraction = done as f64 / todo.len() as f64;
-            let what = format!("{done} of {} runs done", todo.len());
+        if todo.is_empty() {
+            return;
+        }
+        let fraction = done as f64 / todo.len() as f64;
+        let what = format!("{done} of {} runs done", todo.len());
+        tell(fraction, &what);
+        if is_logged {
             log.borrow_mut().tell(fraction, &what);
         }
     };
-    tell(0);
+    show(0);
     let worked = interrupt.run_interruptible(|interrupted| {
-        work(study, all, &todo, &runs, options.jobs, interrupted, &tell)
+        work(study, all, &todo, &runs, options.jobs, interrupted, &show)
     });
     bar.finish_and_clear();
     worked

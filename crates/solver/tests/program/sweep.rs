@@ -458,6 +458,7 @@ fn what_is_refused() {
     let bench = bench(STEPS);
     assert!(bad(&bench, &["--collect"], 2).contains("no sweep is in this folder"));
     assert!(bad(&bench, &["--jobs", "0"], 2).contains("--jobs: 0 is not between 1 and 1024"));
+    assert!(bad(&bench, &["--threads", "0"], 2).contains("--threads: 0 is not between 1 and 1024"));
     assert!(
         bad(&bench, &["--output", "."], 2)
             .contains("this folder holds something else than a sweep")

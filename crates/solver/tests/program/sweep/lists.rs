@@ -27,6 +27,8 @@ fn listed_commands_give_the_same_table() {
     let commands = good(&bench, &["--list", "--output", "apart"]);
     assert_eq!(commands.lines().count(), 16);
     assert!(!bench.path("apart/runs/0001-1").exists());
+    let of_two = good(&bench, &["--list", "--threads", "2", "--output", "of-two"]);
+    assert!(of_two.lines().all(|line| line.contains(" --threads 2 ")));
     let run = |commands: &str| {
         let list = bench.write("list.sh", commands);
         let mut sh = Command::new("sh");
