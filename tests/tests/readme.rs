@@ -432,7 +432,10 @@ fn development_names_every_command_that_writes_tables() {
     assert!(words.len() >= 25, "{words:?}");
     for words in words {
         let named = [" -- ", "`"].map(|before| page.contains(&format!("{before}{words}`")));
-        assert!(named.contains(&true), "doc/inside/development.md lacks {words}");
+        assert!(
+            named.contains(&true),
+            "doc/inside/development.md lacks {words}"
+        );
     }
 }
 
