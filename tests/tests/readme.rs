@@ -231,7 +231,6 @@ fn commands_for_calibration_run() {
 fn commands_for_the_tablet_run() {
     let made = [
         "measured.json",
-        "tablet.toml",
         "tablet.html",
         "tablet-drop-out/report.html",
         "tablet-drop-sweep/sweep.html",
