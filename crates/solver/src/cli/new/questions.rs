@@ -78,6 +78,8 @@ fn ended(question: &Question) -> Diagnostic {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
     use dem_io::units::length_m;
 
