@@ -163,7 +163,7 @@ fn box_stl([x, y, z]: [u32; 3]) -> String {
 #[test]
 fn answers_are_in_the_scene() {
     let bench = Bench::new();
-    bench.write("mine.stl", &box_stl([20, 10, 10]));
+    bench.write("mine.stl", box_stl([20, 10, 10]));
     let options = [
         "drop",
         "some/where/mine",
@@ -216,7 +216,7 @@ fn answers_are_in_the_scene() {
 fn wrong_answers_are_refused() {
     let bench = Bench::new();
     bench.write("text.stl", "no facets");
-    bench.write("cube.stl", &box_stl([10, 10, 10]));
+    bench.write("cube.stl", box_stl([10, 10, 10]));
     for (options, parts) in [
         (&["drop", "--mass", "700 g"][..], "--mass: '700 g' gives 4"),
         (
