@@ -1,8 +1,8 @@
-//! The table of doc/performance.md on many bodies: the time of a step over the number of bodies
-//! that wait in an inlet, sleep, lie, ride, fly bonded or rigid, or are broken; alone, and beside
-//! ten bonded bodies that fly. `cargo bench -p dem-tests --bench bodies`, then `--page FILE` to
-//! write it, or the largest number of bodies to print it up to there. On one thread, some minutes.
-//! With the word `waiting`, what a waiting body costs in time and memory.
+//! The table of doc/inside/performance.md on many bodies: the time of a step over the number of
+//! bodies that wait in an inlet, sleep, lie, ride, fly bonded or rigid, or are broken; alone, and
+//! beside ten bonded bodies that fly. `cargo bench -p dem-tests --bench bodies`, then `--page FILE`
+//! to write it, or the largest number of bodies to print it up to there. On one thread, some
+//! minutes. With the word `waiting`, what a waiting body costs in time and memory.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,

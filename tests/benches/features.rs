@@ -1,5 +1,5 @@
-//! The table of doc/leave-out.md: the cost of each feature of a scene when it is used, and the
-//! absence of a cost when it is not. `cargo bench -p dem-tests --bench features`. A minute.
+//! The table of doc/inside/leave-out.md: the cost of each feature of a scene when it is used, and
+//! the absence of a cost when it is not. `cargo bench -p dem-tests --bench features`. A minute.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,

@@ -1,5 +1,5 @@
-//! The first tables of doc/performance.md: how fast a step is in scenes of bonded bodies, of loose
-//! spheres and of rigid clumps, and how much of it is the neighbour search.
+//! The first tables of doc/inside/performance.md: how fast a step is in scenes of bonded bodies, of
+//! loose spheres and of rigid clumps, and how much of it is the neighbour search.
 //! `cargo bench -p dem-tests --bench figures`, then the names of cases or nothing, and
 //! `--page FILE` to write it. Some minutes.
 #![allow(

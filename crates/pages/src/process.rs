@@ -32,7 +32,7 @@ const OF_MINUTE: &str = "15mm..18mm";
 const PRODUCT_BELTS: [&str; 2] = ["0.1 m/s", "20 mm/s"];
 const MINUTE: [&str; 5] = [
     "run.end_time=\"60 s\"",
-    "measures.mixing.cell_size=\"0.3 m\"",
+    "measures.mixing={of=\"cake\",with=\"rock\",quantity=\"mixing_index\",within=\"on-product-belt\",cell_size=\"0.3 m\"}",
     "output.frames=\"5 s\"",
     "output.series=\"0.1 s\"",
     "output.pictures=\"2 s\"",

@@ -1,5 +1,5 @@
-//! doc/round-robin.md: silo, drum and penetration of the round robin of Dosta et al. 2024 beside
-//! closed forms and numbers of others.
+//! doc/inside/round-robin.md: silo, drum and penetration of the round robin of Dosta et al. 2024
+//! beside closed forms and numbers of others.
 
 use dem_plots::{Line, Plot};
 use std::f64::consts::PI;
@@ -15,7 +15,7 @@ const GRAVITY_M_S2: f64 = 9.81;
 
 pub(crate) fn tables() -> [Table; 4] {
     let of = |words, head, first_cells: Vec<&'static str>| {
-        Table::new("doc/round-robin.md", words, head, first_cells)
+        Table::new("doc/inside/round-robin.md", words, head, first_cells)
     };
     let silo = "floor | spheres | hole | hole over diameter | spheres per second | Beverloo | off";
     let bed = " | here | reference";
@@ -257,7 +257,7 @@ pub(crate) fn drum(bench: &Bench) -> Result<(), Failed> {
         "mass (kg)",
         lines,
     );
-    draw("doc/round-robin-drum.svg", &plot)?;
+    draw("doc/inside/round-robin-drum.svg", &plot)?;
     write(&[power, bed])
 }
 
@@ -408,7 +408,7 @@ pub(crate) fn penetration(bench: &Bench) -> Result<(), Failed> {
     lines.push(Line::dashed("LIGGGHTS and MUSEN, at rest", at_rest));
     let title = "a ball that hits a bed of spheres at 5 m/s";
     let plot = Plot::of(title, "time (s)", "displacement (mm)", lines);
-    draw("doc/round-robin-penetration.svg", &plot)?;
+    draw("doc/inside/round-robin-penetration.svg", &plot)?;
     write(&[table])
 }
 

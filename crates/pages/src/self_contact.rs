@@ -1,4 +1,4 @@
-//! doc/self-contact.md: scenes with and without contacts within pieces.
+//! doc/inside/self-contact.md: scenes with and without contacts within pieces.
 
 use std::fmt::Write;
 
@@ -75,7 +75,7 @@ pub(crate) fn tables() -> [Table; 1] {
     }
     first_cells.extend([(); 4].map(|()| format!("`chute-region.toml`, {SEEDS} seeds")));
     let head = "scene |  | never | `self_contact`";
-    let page = "doc/self-contact.md";
+    let page = "doc/inside/self-contact.md";
     [Table::new(page, "self-contact", head, first_cells)]
 }
 

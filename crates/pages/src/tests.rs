@@ -33,7 +33,7 @@ fn tables() -> Vec<Table> {
 /// The pages, from the root of the repository.
 fn pages() -> Vec<PathBuf> {
     let mut pages = vec![PathBuf::from("README.md")];
-    for folder in ["doc", "tests/verification"] {
+    for folder in ["doc", "doc/inside", "tests/verification"] {
         let files = std::fs::read_dir(root().join(folder)).unwrap();
         let names = files.map(|file| Path::new(folder).join(file.unwrap().file_name()));
         pages.extend(names.filter(|name| name.extension().is_some_and(|end| end == "md")));

@@ -55,7 +55,7 @@ pub(super) fn notes(scene: &Scene, state: &State) -> Vec<String> {
             continue;
         }
         let note = format!(
-            "body '{}' rebounds from a flat landing at {} of its speed as a clump, and at about {} as the cluster that replaces it: contacts of bonded spheres are damped for the mass of one sphere, and each stops that of {} (doc/contacts.md, Contacts of clumps)",
+            "body '{}' rebounds from a flat landing at {} of its speed as a clump, and at about {} as the cluster that replaces it: contacts of bonded spheres are damped for the mass of one sphere, and each stops that of {} (doc/inside/contacts.md, Contacts of clumps)",
             template.body,
             significant(rigid, 2),
             significant(bonded, 2),

@@ -65,7 +65,7 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
         }
         None => String::new(),
     };
-    let mut ended = format!(
+    let ended = format!(
         "{} simulated{part} in {} on {}, ended by {}; {}.",
         show_quantity(summary.simulated_s, "s"),
         show_quantity(summary.wall_s, "s"),
@@ -73,10 +73,11 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
         summary.ended_by,
         summary.program,
     );
-    if !summary.notes.is_empty() {
-        ended += &format!(" {}.", summary.notes.join(". "));
-    }
     page.paragraph(&ended);
+    if !summary.notes.is_empty() {
+        let title = counted(summary.notes.len(), "note");
+        page.details(&title, &summary.notes.join("\n"));
+    }
 }
 
 /// The plots of the folder.

@@ -171,6 +171,7 @@ fn markup(head: &str, data: &str, chosen: &Chosen) -> Markup {
                         span class="low" {} span class="ramp" {} span class="high" {}
                     }
                     span class="bodies" hidden[true] {}
+                    span class="pieces" hidden[true] { "each fragment has its own colour" }
                     @for name in ["spheres", "bonds", "walls"] {
                         label { input class=(name) type="checkbox"; " " (name) }
                     }

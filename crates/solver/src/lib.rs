@@ -36,9 +36,9 @@ pub use dem_runner::{self as run, RunSettings, run};
 
 /// The code on the page is compiled and run with the tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../doc/adding-a-model.md")]
+#[doc = include_str!("../../../doc/inside/adding-a-model.md")]
 struct AddingAModel;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../../doc/library.md")]
+#[doc = include_str!("../../../doc/inside/library.md")]
 struct Library;

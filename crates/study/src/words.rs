@@ -33,6 +33,9 @@ pub(crate) fn in_words(path: &str) -> String {
     let keys = keys.iter().filter(|key| !LEFT_OUT.contains(key));
     let keys: Vec<String> = keys.map(|key| key.replace('_', " ")).collect();
     let words = keys.join(" ");
+    let words = words
+        .replace("young m", "Young's m")
+        .replace("poisson r", "Poisson's r");
     of.map_or(words.clone(), |name| format!("{words} of {name}"))
 }
 
@@ -53,6 +56,7 @@ mod tests {
                 "restitution of cake-steel",
             ),
             ("run.safety_factor", "safety factor"),
+            ("bonds.cake.young_modulus", "Young's modulus of cake"),
             ("largest_fragment", "largest fragment"),
             ("bodies.cake", "cake"),
         ] {

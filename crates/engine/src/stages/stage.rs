@@ -65,7 +65,8 @@ impl Need {
 pub struct Saving {
     /// Bytes of its arrays.
     pub bytes: usize,
-    /// Time per step on one thread, ns, from its cost per item on the machine of doc/leave-out.md.
+    /// Time per step on one thread, ns, from its cost per item on the machine of
+    /// doc/inside/leave-out.md.
     pub ns: f64,
 }
 

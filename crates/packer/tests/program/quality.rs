@@ -1,4 +1,4 @@
-//! The quality of the bending sample's packing: the figures given in doc/packing-method.md.
+//! The quality of the bending sample's packing: the figures given in doc/inside/packing-method.md.
 
 use super::{Bench, Made, root};
 

@@ -1,4 +1,4 @@
-//! Failure criteria, and their list. See `doc/adding-a-model.md` for how to add another.
+//! Failure criteria, and their list. See `doc/inside/adding-a-model.md` for how to add another.
 
 use serde::{Deserialize, Serialize};
 

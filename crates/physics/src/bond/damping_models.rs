@@ -1,4 +1,5 @@
-//! Damping models of bonds, one per file. See `doc/adding-a-model.md` for how to add another.
+//! Damping models of bonds, one per file. See `doc/inside/adding-a-model.md` for how to add
+//! another.
 
 mod chen;
 mod mode_ratios;

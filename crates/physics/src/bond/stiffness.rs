@@ -1,5 +1,5 @@
-//! The bond models: the one place that lists them. See `doc/adding-a-model.md` for how to add
-//! another.
+//! The bond models: the one place that lists them. See `doc/inside/adding-a-model.md` for how to
+//! add another.
 
 use super::models::elastic_solid::ElasticSolid;
 use super::models::euler_bernoulli::EulerBernoulli;

@@ -1,5 +1,5 @@
 //! The contact laws and rolling friction models available to a pair of materials: the one place
-//! that lists them. See `doc/adding-a-model.md` for how to add another.
+//! that lists them. See `doc/inside/adding-a-model.md` for how to add another.
 
 pub mod dmt;
 pub mod hertz_mindlin;

@@ -1,4 +1,4 @@
-//! The formulas of doc/contacts.md, computed here from the page, compared with the program.
+//! The formulas of doc/inside/contacts.md, computed here from the page, compared with the program.
 
 use dem_physics::contact::kinematics::{
     ContactKinematics, ContactSphere, WallPoint, contact_kinematics, torques,
@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use super::assert_near;
 use super::world::relative_velocity;
 
-const PAGE: &str = include_str!("../../../../doc/contacts.md");
+const PAGE: &str = include_str!("../../../../doc/inside/contacts.md");
 const OVERLAP_M: f64 = 2e-5;
 const YOUNG_PA: [f64; 2] = [50e6, 80e6];
 const POISSON: [f64; 2] = [0.25, 0.4];

@@ -427,6 +427,7 @@ function play(is_on) {
 function legend() {
   const ramp = ramps[choice.mode];
   find("bodies").hidden = choice.mode !== "body";
+  find("pieces").hidden = choice.mode !== "piece";
   find("legend").hidden = !ramp;
   if (!ramp) return;
   const stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map(level => `rgb(${ramp.colours[level].map(Math.round)})`);

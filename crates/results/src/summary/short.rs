@@ -28,14 +28,15 @@ impl Summary {
         if !matches!(self.ended_by.as_str(), "end time" | "equilibrium") {
             writeln!(out, "ended by     {}", self.ended_by)?;
         }
+        if let Some(change) = &self.resumed_with {
+            writeln!(out, "resumed      {change}")?;
+        }
         let shown = self.measures.len().min(SHOWN);
         measure_lines(&self.measures[..shown], out)?;
         if self.measures.len() > shown {
-            writeln!(
-                out,
-                "             and {} more measures",
-                self.measures.len() - shown
-            )?;
+            let more = self.measures.len() - shown;
+            let s = if more == 1 { "" } else { "s" };
+            writeln!(out, "             and {more} more measure{s}")?;
         }
         if let Some(test) = &self.test {
             write!(out, "{test}")?;

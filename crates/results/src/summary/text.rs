@@ -372,6 +372,7 @@ pub(super) fn measure_lines(measures: &[Measured], f: &mut impl Write) -> fmt::R
 /// One line for a measure: value, and reference and error where there is one.
 fn measure_text(measure: &Measured, width: usize) -> String {
     let show = |value: f64| match measure.unit.as_str() {
+        _ if value.is_nan() => "no value".to_owned(),
         "m" if value.abs() < 1.0 => format!("{} mm", significant(value * 1e3, 6)),
         unit => format!("{} {unit}", significant(value, 6))
             .trim_end()

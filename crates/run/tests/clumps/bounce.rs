@@ -328,7 +328,7 @@ fn bonded_rebound(law: &str, restitution: f64, layers: u32) -> f64 {
 /// Each contact of the lowest layer stops all that stand on it; the page has the same values.
 #[test]
 fn bonded_blocks_rebound_the_faster_the_more_layers_they_have() {
-    let page = include_str!("../../../../doc/contacts.md");
+    let page = include_str!("../../../../doc/inside/contacts.md");
     for restitution in [0.2, 0.5, 0.8] {
         let expected = [1, 2, 4, 8].map(|layers| bonded_restitution(restitution, layers.into()));
         let [a, b, c, d] = expected;

@@ -1,8 +1,8 @@
-//! The energy error of a bounce, as documented in doc/contacts.md.
+//! The energy error of a bounce, as documented in doc/inside/contacts.md.
 
 use super::{assert_near, run_of};
 
-const PAGE: &str = include_str!("../../../../doc/contacts.md");
+const PAGE: &str = include_str!("../../../../doc/inside/contacts.md");
 
 /// The page's scene gives the page's numbers, which decrease with the square of the step.
 #[test]

@@ -117,11 +117,14 @@ pub(super) enum Command {
         #[arg(long, short)]
         quiet: bool,
     },
-    /// Make a folder with a scene to start from: drop, chute, crusher, bending or compression
+    /// Make a folder with a scene to start from: drop, drop-weight, chute, crusher, mill, silo,
+    /// bending, brazilian or compression
     #[command(
-        after_help = "Makes FOLDER with scene.toml, shape.stl, body.vtp (few large spheres, to run in seconds) and scene.schema.json for editors.\n\
+        after_help = "Makes FOLDER with scene.toml, shape.stl, body.vtp (the shape packed with spheres) and scene.schema.json for editors.\n\
+                      On a terminal it asks what the options leave open, and Enter takes the default; elsewhere defaults are taken.\n\
                       Nothing is overwritten.\n\
-                      Example:\n  dem-run new drop my-drop"
+                      Examples:\n  dem-run new drop my-drop\n  \
+                      dem-run new drop my-drop --shape tablet.stl --size \"12 mm\" --mass \"420 mg\" --height \"1 m\""
     )]
     New(NewArguments),
     /// Print the keys of scenes and studies: type, unit, default, limits and meaning

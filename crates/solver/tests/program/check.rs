@@ -3,7 +3,10 @@
 use super::{Bench, corpus, dem_run, scene_of_data, vtp_bytes};
 
 fn check(bench: &Bench, options: &[&str]) -> String {
-    let whole = (!options.contains(&"--json")).then_some("--verbose");
+    let is_other = options
+        .iter()
+        .any(|option| ["--json", "--quiet"].contains(option));
+    let whole = (!is_other).then_some("--verbose");
     let output = dem_run()
         .current_dir(bench.path(""))
         .arg("check")

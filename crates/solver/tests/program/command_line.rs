@@ -84,7 +84,10 @@ fn arguments_are_refused_on_one_line() {
             &["scene.toml", "--threads", "x"],
             "invalid value 'x' for '--threads <N>'",
         ),
-        (&["new", "mill", "x"], "invalid value 'mill' for '<TYPE>'"),
+        (
+            &["new", "milling", "x"],
+            "invalid value 'milling' for '<TYPE>'",
+        ),
         (&["run", "gone.toml"], "gone.toml: there is no such file"),
         (&["fragment", "results"], "--largest"),
     ] {

@@ -62,7 +62,7 @@ fn within(bench: &Bench, words: &[&str]) -> Command {
 #[test]
 fn a_killed_new_leaves_all_or_nothing() {
     let whole = Bench::new();
-    let new = |bench: &Bench| within(bench, &["new", "bending", "made"]);
+    let new = |bench: &Bench| within(bench, &["new", "silo", "made"]);
     kill_often(&whole, &new, &mut |bench| {
         let made = bench.path("made");
         if made.exists() {

@@ -15,80 +15,262 @@ fn new(bench: &Bench, options: &[&str]) -> std::process::Output {
     command.output().unwrap()
 }
 
-/// A scene to start from is made and runs as it stands, by the commands that are printed; the
-/// bodies break, or the tests give a modulus.
-fn is_made_and_runs(name: &str) {
+/// The folder of a template, with the commands that are printed.
+fn made(name: &str, options: &[&str]) -> (Bench, Vec<String>) {
     let bench = Bench::new();
-    let output = new(&bench, &[name, name]);
+    let output = new(&bench, &[&[name, name], options].concat());
     let said = String::from_utf8(output.stdout).unwrap();
+    let wrong = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && wrong.is_empty(), "{wrong}");
+    let begin = format!("made {name}: scene.toml, shape.stl, body.vtp with ");
+    assert!(said.starts_with(&begin), "{said}");
+    assert!(bench.path(name).join("scene.schema.json").exists());
+    let text = fs::read_to_string(bench.path(name).join("scene.toml")).unwrap();
+    assert!(text.starts_with("#:schema scene.schema.json\n# "), "{name}");
+    let lines = said
+        .lines()
+        .filter_map(|line| line.strip_prefix("  dem-run "));
+    let commands: Vec<String> = lines.map(str::to_owned).collect();
+    assert_eq!(commands.len(), 2, "{said}");
+    (bench, commands)
+}
+
+/// Runs a printed command, with further arguments.
+fn go(bench: &Bench, command: &str, more: &[&str]) -> String {
+    let mut run = dem_run();
+    run.args(command.split(' ')).args(more);
+    let output = run.current_dir(bench.folder.path()).output().unwrap();
+    let wrong = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command}: {wrong}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn summary(bench: &Bench, name: &str) -> Value {
+    let summary = bench.path(name).join("results/summary.json");
+    serde_json::from_slice(&fs::read(summary).unwrap()).unwrap()
+}
+
+/// With the spheres that it has by default, a scene has no warning before it runs. With few large
+/// ones it runs as it stands, by the commands that are printed; the bodies break, or the tests give
+/// a modulus.
+fn is_made_and_runs(name: &str, diameter: &str) {
+    let (bench, commands) = made(name, &[]);
+    let checked = go(&bench, &commands[0], &[]);
+    let has_warning = checked.lines().any(|line| line.starts_with("warning"));
+    assert!(!has_warning, "{name}: {checked}");
+    let (bench, commands) = made(name, &["--diameter", diameter]);
+    go(&bench, &commands[1], &[]);
+    let summary = summary(&bench, name);
+    let broken = summary["broken_bonds"].as_u64().unwrap();
+    assert!(broken > 10, "{name}: {broken}");
+    let error = summary["energy_error"].as_f64().unwrap();
+    assert!(error < 0.02, "{name}: {error}");
+    match &summary["test"]["results"] {
+        Value::Null => assert!(bench.path(name).join("results/film.png").exists(), "{name}"),
+        results => assert!(
+            name == "drop-weight" || results.to_string().contains("specimen modulus"),
+            "{name}"
+        ),
+    }
+}
+
+/// The same for rigid bodies, for this long, with the spheres that they have by default.
+fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) {
+    let (bench, commands) = made(name, &[]);
+    let checked = go(&bench, &commands[0], &[]);
+    let has_warning = checked.lines().any(|line| line.starts_with("warning"));
+    assert!(!has_warning, "{name}: {checked}");
+    let end = format!("run.end_time={time}");
+    go(&bench, &commands[1], &["--set", &end]);
+    let summary = summary(&bench, name);
+    assert!(summary["population"]["fed"].as_u64().unwrap() >= bodies);
+    assert!(summary["energy_error"].as_f64().unwrap() < 0.01);
+}
+
+#[test]
+fn drop_runs() {
+    is_made_and_runs("drop", "3.6mm..4.4mm");
+}
+
+#[test]
+fn drop_weight_runs() {
+    is_made_and_runs("drop-weight", "5mm..6mm");
+}
+
+#[test]
+fn chute_runs() {
+    is_made_and_runs("chute", "7mm..9mm");
+}
+
+#[test]
+fn crusher_runs() {
+    is_made_and_runs("crusher", "8mm..10mm");
+}
+
+#[test]
+fn mill_runs() {
+    is_made_and_runs_for("mill", "0.1 s", 5);
+}
+
+#[test]
+fn silo_runs() {
+    is_made_and_runs_for("silo", "0.05 s", 20);
+}
+
+#[test]
+fn bending_runs() {
+    is_made_and_runs("bending", "5mm..6mm");
+}
+
+#[test]
+fn brazilian_runs() {
+    is_made_and_runs("brazilian", "5mm..6mm");
+}
+
+#[test]
+fn compression_runs() {
+    is_made_and_runs("compression", "5mm..6mm");
+}
+
+/// A box with one corner at the origin, mm.
+fn box_stl([x, y, z]: [u32; 3]) -> String {
+    let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
+    let edges = [x, y, z].map(f64::from);
+    let sides = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let mut text = "solid box\n".to_owned();
+    for [a, b, c, d] in sides {
+        for facet in [[a, b, c], [a, c, d]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for k in facet {
+                let at = corner(k);
+                let [x, y, z] = [0, 1, 2].map(|axis| at[axis] * edges[axis]);
+                text += &format!("vertex {x} {y} {z}\n");
+            }
+            text += "endloop\nendfacet\n";
+        }
+    }
+    text + "endsolid box\n"
+}
+
+/// Shape, size, mass and height stand in the scene, and `check` finds them there.
+#[test]
+fn answers_are_in_the_scene() {
+    let bench = Bench::new();
+    bench.write("mine.stl", box_stl([20, 10, 10]));
+    let options = [
+        "drop",
+        "some/where/mine",
+        "--shape",
+        "mine.stl",
+        "--size",
+        "40 mm",
+        "--mass",
+        "20 g",
+        "--height",
+        "500 mm",
+        "--diameter",
+        "6mm..8mm",
+    ];
+    let output = new(&bench, &options);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(
         output.status.success(),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
     assert!(
-        said.starts_with(&format!(
-            "made {name}: scene.toml, shape.stl, body.vtp with "
-        )),
+        said.contains("the result will be coarse; --diameter "),
         "{said}"
     );
-    assert!(bench.path(name).join("scene.schema.json").exists());
-    let text = fs::read_to_string(bench.path(name).join("scene.toml")).unwrap();
-    assert!(text.starts_with("#:schema scene.schema.json\n# "), "{name}");
-    let commands: Vec<&str> = said
+    let folder = bench.path("some/where/mine");
+    let text = fs::read_to_string(folder.join("scene.toml")).unwrap();
+    for line in [
+        "mass = \"20 g\"                    # over the volume of the shape: 1250 kg/m3",
+        "drop = { height = \"500 mm\", onto = \"plate\" }",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    let shape = fs::read_to_string(folder.join("shape.stl")).unwrap();
+    let corners = shape
         .lines()
-        .filter_map(|line| line.strip_prefix("  dem-run "))
-        .collect();
-    assert_eq!(commands.len(), 2, "{said}");
-    for command in commands {
-        let mut run = dem_run();
-        run.args(command.split(' '))
-            .current_dir(bench.folder.path());
-        let output = run.output().unwrap();
-        assert!(
-            output.status.success(),
-            "{command}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-    }
-    let summary = bench.path(name).join("results/summary.json");
-    let summary: Value = serde_json::from_slice(&fs::read(summary).unwrap()).unwrap();
-    let broken = summary["broken_bonds"].as_u64().unwrap();
-    assert!(broken > 10, "{name}: {broken}");
+        .filter_map(|line| line.trim().strip_prefix("vertex "));
+    let xs = corners.map(|corner| corner.split(' ').next().unwrap().parse::<f64>().unwrap());
+    let half = xs.fold(0.0, f64::max);
+    assert!((half - 20.0).abs() < 1e-6, "{half}");
+    go(&bench, "check some/where/mine/scene.toml", &[]);
+    let twice = refused(&new(&bench, &options)).0;
     assert!(
-        summary["energy_error"].as_f64().unwrap() < 0.02,
-        "{name}: {}",
-        summary["energy_error"]
+        twice.contains("there is such a file or folder already"),
+        "{twice}"
     );
-    match &summary["test"]["results"] {
-        Value::Null => assert!(bench.path(name).join("results/film.png").exists(), "{name}"),
-        results => assert!(results.to_string().contains("specimen modulus"), "{name}"),
+}
+
+#[test]
+fn wrong_answers_are_refused() {
+    let bench = Bench::new();
+    bench.write("text.stl", "no facets");
+    bench.write("cube.stl", box_stl([10, 10, 10]));
+    for (options, parts) in [
+        (&["drop", "--mass", "700 g"][..], "--mass: '700 g' gives 4"),
+        (
+            &["drop", "--mass", "1 mg"],
+            "not between 20 and 23000 kg/m3; write a mass from ",
+        ),
+        (
+            &["drop", "--height", "0 m"],
+            "--height: '0 m' is not above 0; write a length above 0",
+        ),
+        (
+            &["drop", "--height", "-1 m"],
+            "--height: '-1 m' is not above 0",
+        ),
+        (
+            &["drop", "--size", "large"],
+            "--size: 'large' is not a length",
+        ),
+        (
+            &["drop", "--size", "300"],
+            "--size: 300 m is not between 10 um and 100 m",
+        ),
+        (&["drop", "--shape", "text.stl"], "--shape: text.stl"),
+        (
+            &["drop", "--shape", "gone.stl"],
+            "--shape: gone.stl: there is no such file",
+        ),
+        (
+            &["bending", "--shape", "cube.stl"],
+            "--shape: it is 10 mm along x, less than 3 times",
+        ),
+        (
+            &["drop", "--speed", "1 m/s"],
+            "--speed: the scene 'drop' does not use it; remove it: it uses --shape, --size, --mass, --height and --diameter",
+        ),
+        (
+            &["bending", "--height", "1 m"],
+            "it uses --shape, --size, --mass and --diameter",
+        ),
+        (
+            &["crusher", "--gap", "61 mm"],
+            "--gap: 61 mm is not below 60 mm",
+        ),
+        (
+            &["mill", "--speed", "3 m"],
+            "--speed: '3 m' is not an angular velocity",
+        ),
+        (&["drop", "--diameter", "1 kg"], "--diameter"),
+        (&["drop", "--diameter", "1 m"], "no sphere fits"),
+    ] {
+        let (said, code) = refused(&new(&bench, &[options, &["made/here"]].concat()));
+        assert!(code == 2 && said.contains(parts), "{options:?}: {said}");
+        assert!(!bench.path("made").exists(), "{options:?}");
     }
-}
-
-#[test]
-fn drop_runs() {
-    is_made_and_runs("drop");
-}
-
-#[test]
-fn chute_runs() {
-    is_made_and_runs("chute");
-}
-
-#[test]
-fn crusher_runs() {
-    is_made_and_runs("crusher");
-}
-
-#[test]
-fn bending_runs() {
-    is_made_and_runs("bending");
-}
-
-#[test]
-fn compression_runs() {
-    is_made_and_runs("compression");
 }
 
 #[test]
@@ -107,13 +289,16 @@ fn nothing_is_overwritten() {
     fs::create_dir(bench.path("full")).unwrap();
     assert_eq!(refused(&new(&bench, &["chute", "full"])).1, 2);
     assert!(fs::read_dir(bench.path("full")).unwrap().next().is_none());
-    let (said, code) = refused(&new(&bench, &["chute", "missing/here"]));
-    assert!(code == 2 && said.contains("does not exist"), "{said}");
-    let output = new(&bench, &["mill", "mine"]);
+    let (said, code) = refused(&new(&bench, &["silo", "taken/here"]));
+    assert!(
+        code == 2 && said.contains("is a file, not a folder"),
+        "{said}"
+    );
+    let output = new(&bench, &["milling", "mine"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(!bench.path("mine").exists());
-    // A name that looks like an option of dem-pack.
-    let output = new(&bench, &["drop", "--", "-d"]);
+    // A name that looks like an option.
+    let output = new(&bench, &["silo", "--", "-d"]);
     assert!(
         output.status.success(),
         "{}",

@@ -173,7 +173,7 @@ fn a_run_that_is_over_says_so_and_can_be_taken_further() {
             "run.rest_energy_ratio=1e-12",
         ],
     );
-    assert!(said.contains("ended by rest"), "{said}");
+    assert!(said.contains("ended by     rest"), "{said}");
 }
 
 /// A flipped bit in a table or a frame would stay in the results of the whole run.

@@ -27,7 +27,7 @@ fn measured(summary: &Value, name: &str) -> f64 {
 #[test]
 fn says_how_the_equilibrium_was_found() {
     let bench = Bench::new();
-    let said = cantilever(&bench, &[]);
+    let said = cantilever(&bench, &["--verbose"]);
     let mut lines = said.lines();
     assert!(
         lines
@@ -52,10 +52,7 @@ fn says_how_the_equilibrium_was_found() {
         said.contains("solved       60 unknowns; 6 freedoms held\n"),
         "{said}"
     );
-    assert!(
-        said.contains("\nverdict      sound: no warnings\n"),
-        "{said}"
-    );
+    assert!(said.contains("\nverdict      sound\n"), "{said}");
     for absent in ["steps ", "inactive", "energy "] {
         assert!(!said.contains(absent), "{said}");
     }
@@ -153,7 +150,7 @@ fn check_says_what_is_solved() {
     let check = |more: &[&str]| {
         let output = dem_run()
             .current_dir(bench.path(""))
-            .args(["check", "--verbose"])
+            .arg("check")
             .arg(&scene)
             .args(STATIC)
             .args(more)
@@ -162,7 +159,7 @@ fn check_says_what_is_solved() {
         assert!(output.status.success());
         String::from_utf8(output.stdout).unwrap()
     };
-    let said = check(&[]);
+    let said = check(&["--verbose"]);
     for part in [
         "static\nrun.rest_energy_ratio",
         "holds          11 particles, 10 bonds\n",
@@ -173,7 +170,7 @@ fn check_says_what_is_solved() {
     ] {
         assert!(said.contains(part), "'{part}' is not in\n{said}");
     }
-    let torque = check(&["--set", "loads.tip.torque=[0, 0, 1]"]);
+    let torque = check(&["--verbose", "--set", "loads.tip.torque=[0, 0, 1]"]);
     assert!(
         torque.contains("by             Newton's method; L U, as torques act on"),
         "{torque}"
@@ -308,7 +305,7 @@ fn a_row_that_is_pulled_has_the_modulus_of_its_bonds() {
     assert_modulus(&results, "modulus by travel");
     assert_modulus(&results, "specimen modulus");
     assert!(results.iter().all(|one| one["name"] != "strength"));
-    let said = bench.good(&scene, &["--output", "other"]);
+    let said = bench.good(&scene, &["--verbose", "--output", "other"]);
     assert!(
         said.contains("modulus by travel") && said.contains("Newton iterations"),
         "{said}"

@@ -49,16 +49,16 @@ fn a_table_of_the_cases_asked_for() {
     );
 }
 
-/// doc/stress.md contains the printed table, with all cases.
+/// doc/inside/stress.md contains the printed table, with all cases.
 #[test]
 fn the_page_has_the_table() {
     let table = said(&stress(&["mesh-wall", "size"]));
     let refused = String::from_utf8(stress(&["?"]).stderr).unwrap();
     let (_, known) = refused.split_once("take some of ").unwrap();
     let (known, _) = known.split_once(';').unwrap();
-    let text = std::fs::read_to_string(root().join("doc/stress.md")).unwrap();
+    let text = std::fs::read_to_string(root().join("doc/inside/stress.md")).unwrap();
     for line in table.lines() {
-        assert!(text.contains(line), "doc/stress.md lacks {line}");
+        assert!(text.contains(line), "doc/inside/stress.md lacks {line}");
     }
     let rows = text
         .lines()

@@ -208,7 +208,7 @@ fn where_there_is_next_to_no_energy_nobody_is_stopped() {
     let bench = super::Bench::new();
     for at in ["0.03", "0.0299999999", "0.02999999999999"] {
         let scene = bench.write("touch.toml", TOUCHING.replace("0.03,", &format!("{at},")));
-        let overlaps = ["--set", "run.initial_overlap=relax"];
+        let overlaps = ["--verbose", "--set", "run.initial_overlap=relax"];
         assert!(bench.good(&scene, &overlaps).contains("ended by end time"));
     }
     let scene = bench.write("bounce.toml", BOUNCING);

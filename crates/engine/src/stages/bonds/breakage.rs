@@ -12,7 +12,7 @@ use crate::state::partitions::Partition;
 use crate::state::partitions::{Idle, STALE, divide_anew};
 use dem_physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
 
-/// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
+/// ns per bond of a body of 25,547 particles: see doc/inside/leave-out.md.
 const FAILURE_NS: f64 = 2.1;
 const SCATTER_NS: f64 = 1.2;
 

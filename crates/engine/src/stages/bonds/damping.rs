@@ -77,7 +77,7 @@ use crate::threads::for_each;
 use dem_physics::chebyshev::Chebyshev;
 use dem_physics::remembered::{MOST, Remembered};
 
-/// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
+/// ns per bond of a body of 25,547 particles: see doc/inside/leave-out.md.
 const BOND_DAMPING_NS: f64 = 43.3;
 
 /// Largest eigenvalue of G up to which one stage needs no running mean.

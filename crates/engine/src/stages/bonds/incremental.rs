@@ -12,7 +12,7 @@ use crate::state::particles::Particles;
 use crate::threads::for_each;
 use dem_physics::bond::incremental::{Step, advance};
 
-/// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
+/// ns per bond of a body of 25,547 particles: see doc/inside/leave-out.md.
 const HISTORY_NS: f64 = 37.6;
 
 /// Histories of bonds of the incremental formulation, and their forces.

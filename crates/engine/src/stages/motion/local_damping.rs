@@ -18,7 +18,7 @@ use crate::state::clusters::Clusters;
 use crate::state::particles::{Particles, Wrench};
 use crate::threads::for_each;
 
-/// ns per particle of a body of 25,547 particles: see doc/leave-out.md.
+/// ns per particle of a body of 25,547 particles: see doc/inside/leave-out.md.
 const PARTICLE_DAMPING_NS: f64 = 37.6;
 
 /// Damping of particles.

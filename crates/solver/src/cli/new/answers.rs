@@ -1,0 +1,222 @@
+//! What the options say, and a person at the terminal: shape, size, mass, and situation.
+
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::Path;
+
+use dem_io::stl::read_stl_file;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::units::{Dimension, LENGTH, MASS, quantity, significant};
+use dem_io::{Diagnostic, Result, Surface, explain_read};
+
+use super::arguments::NewArguments;
+use super::fill::Value;
+use super::questions::{Question, Questions};
+use super::shape::{Facet, stl};
+use super::templates::{Measured, Template};
+
+/// The limits within which a body is likely what was meant, m.
+const SIZES_M: [f64; 2] = [1e-5, 100.0];
+/// The densities of solids, from foams to the heaviest metal, kg/m3.
+const DENSITIES_KG_M3: [f64; 2] = [20.0, 23_000.0];
+
+/// What the answers give.
+pub(super) struct Answers {
+    /// The shape, scaled, with the middle of its box at the origin.
+    pub(super) surface: Surface,
+    pub(super) facets: Vec<Facet>,
+    pub(super) body: Measured,
+    /// The line of the scene with mass or density.
+    pub(super) weight: String,
+    /// The number of the situation, or 0 without one.
+    pub(super) situation_si: f64,
+}
+
+/// The options, and on a terminal what they leave open.
+pub(super) fn answers(arguments: &NewArguments) -> Result<Answers> {
+    arguments.refuse_unused()?;
+    let is_terminal = std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
+    let is_asked = is_terminal && !arguments.yes;
+    let mut questions = Questions {
+        terminal: is_asked.then(|| (std::io::stdin().lock(), std::io::stderr())),
+    };
+    let template = arguments.template;
+    let (facets, surface) = shape(&mut questions, arguments)?;
+    let volume_m3 = surface.volume_m3();
+    let usual_kg = template.density_kg_m3() * volume_m3;
+    let asked = Question {
+        option: "--mass",
+        what: "of one body",
+        default: Value::new(usual_kg, "kg").text(),
+    };
+    let read = |text: &str| read_mass(text, volume_m3);
+    let mass_kg = questions.answer(&asked, arguments.mass.as_deref(), read)?;
+    let body = Measured {
+        extent_m: extent_m(&surface),
+        mass_kg: mass_kg.unwrap_or(usual_kg),
+        density_kg_m3: mass_kg.unwrap_or(usual_kg) / volume_m3,
+    };
+    Ok(Answers {
+        situation_si: situation(&mut questions, arguments, &body)?,
+        weight: weight(mass_kg, body.density_kg_m3),
+        surface,
+        facets,
+        body,
+    })
+}
+
+/// The shape of its size, with the middle of its box at the origin.
+fn shape<R: BufRead, W: Write>(
+    questions: &mut Questions<R, W>,
+    arguments: &NewArguments,
+) -> Result<(Vec<Facet>, Surface)> {
+    let template = arguments.template;
+    let own = template.shape();
+    let asked = Question {
+        option: "--shape",
+        what: "an STL file in mm",
+        default: own.described(),
+    };
+    let read = |text: &str| read_shape(Path::new(text), template);
+    let original = match questions.answer(&asked, arguments.shape.as_deref(), read)? {
+        Some(surface) => surface,
+        None => surface_of(stl(&own.facets()).as_bytes(), "the shape")?,
+    };
+    let longest_m = extent_m(&original).into_iter().fold(0.0, f64::max);
+    let asked = Question {
+        option: "--size",
+        what: "its largest extent",
+        default: Value::length(longest_m).text(),
+    };
+    let size_m = questions.answer(&asked, arguments.size.as_deref(), read_size)?;
+    let facets = scaled(&original, size_m.map_or(1.0, |size_m| size_m / longest_m));
+    let surface = surface_of(stl(&facets).as_bytes(), &original.source)?;
+    Ok((facets, surface))
+}
+
+fn situation<R: BufRead, W: Write>(
+    questions: &mut Questions<R, W>,
+    arguments: &NewArguments,
+    body: &Measured,
+) -> Result<f64> {
+    let template = arguments.template;
+    let Some(situation) = template.situation(body) else {
+        return Ok(0.0);
+    };
+    let asked = Question {
+        option: situation.option,
+        what: situation.what,
+        default: Value::new(situation.default_si, situation.dimension.si).text(),
+    };
+    let read = |text: &str| {
+        let si = positive(text, situation.dimension)?;
+        template.check(body.extent_m, si).map(|()| si)
+    };
+    let given = arguments.situation(situation.option);
+    let answer = questions.answer(&asked, given, read)?;
+    Ok(answer.unwrap_or(situation.default_si))
+}
+
+/// The line of the scene with the mass that was given, or with the density.
+fn weight(mass_kg: Option<f64>, density_kg_m3: f64) -> String {
+    let density = significant(density_kg_m3, 4);
+    match mass_kg {
+        Some(mass_kg) => {
+            let mass = Value::new(mass_kg, "kg").text();
+            format!(
+                "mass = \"{mass}\"                    # over the volume of the shape: {density} kg/m3"
+            )
+        }
+        None => {
+            format!(
+                "body_density = \"{density} kg/m3\"         # mass over the volume of the shape"
+            )
+        }
+    }
+}
+
+fn extent_m(surface: &Surface) -> [f64; 3] {
+    surface.extent().map(|extent| extent * surface.unit_m)
+}
+
+fn positive(text: &str, dimension: &Dimension) -> Result<f64> {
+    let value = quantity(text, dimension)?;
+    if value > 0.0 {
+        return Ok(value);
+    }
+    Err(Diagnostic::input(
+        "",
+        format!("'{text}' is not above 0"),
+        format!(
+            "write a {} above 0, such as {}",
+            dimension.name, dimension.example
+        ),
+    ))
+}
+
+fn read_size(text: &str) -> Result<f64> {
+    let size_m = positive(text, &LENGTH)?;
+    let [smallest, largest] = SIZES_M;
+    if (smallest..=largest).contains(&size_m) {
+        return Ok(size_m);
+    }
+    Err(Diagnostic::input(
+        "",
+        format!(
+            "{} is not between {} and {}",
+            Value::length(size_m).text(),
+            Value::length(smallest).text(),
+            Value::length(largest).text()
+        ),
+        "write the largest extent of one body with its unit, such as 30 mm",
+    ))
+}
+
+fn read_mass(text: &str, volume_m3: f64) -> Result<f64> {
+    let mass_kg = positive(text, &MASS)?;
+    let [lightest, heaviest] = DENSITIES_KG_M3;
+    let density = mass_kg / volume_m3;
+    if (lightest..=heaviest).contains(&density) {
+        return Ok(mass_kg);
+    }
+    let mass = |density: f64| Value::new(density * volume_m3, "kg").text();
+    Err(Diagnostic::input(
+        "",
+        format!(
+            "'{text}' gives {} kg/m3 over the volume of the shape, not between {lightest} and {heaviest} kg/m3",
+            significant(density, 4)
+        ),
+        format!(
+            "write a mass from {} to {}, or check the size",
+            mass(lightest),
+            mass(heaviest)
+        ),
+    ))
+}
+
+fn read_shape(path: &Path, template: Template) -> Result<Surface> {
+    let bytes = read_stl_file(path).map_err(|error| explain_read(path, &error, "an STL file"))?;
+    let surface = surface_of(&bytes, &path.display().to_string())?;
+    template.check(extent_m(&surface), 0.0)?;
+    Ok(surface)
+}
+
+fn surface_of(bytes: &[u8], name: &str) -> Result<Surface> {
+    let settings = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    surface_from_stl(bytes, name, settings)
+}
+
+/// The facets scaled, mm, with the middle of their box at the origin.
+fn scaled(surface: &Surface, scale: f64) -> Vec<Facet> {
+    let extent = surface.extent();
+    let factor = scale * surface.unit_m * 1e3;
+    let moved =
+        |corner: [f64; 3]| [0, 1, 2].map(|axis| factor * (corner[axis] - 0.5 * extent[axis]));
+    let triangles = 0..surface.triangles.len();
+    triangles
+        .map(|triangle| surface.corners(triangle).map(moved))
+        .collect()
+}

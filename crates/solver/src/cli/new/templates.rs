@@ -1,0 +1,293 @@
+//! The scenes to start from: text, shape, density, spheres, and the one number that defines the
+//! situation.
+
+use std::f64::consts::PI;
+
+use clap::ValueEnum;
+use dem_io::units::{ANGULAR_VELOCITY, Dimension, LENGTH, VELOCITY};
+use dem_io::{Diagnostic, Result};
+
+use super::fill::Value;
+use super::shape::Shape;
+
+const GRAVITY_M_S2: f64 = 9.81;
+/// Of a hollow between the jaws of the crusher, which lean outwards by 10 degrees each: height over
+/// width.
+const HEIGHT_OVER_WIDTH: f64 = 2.836;
+
+/// The scenes to start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Template {
+    /// A tablet falls onto a plate
+    Drop,
+    /// A weight falls onto a disc of rock: energy and t10
+    DropWeight,
+    /// Blocks leave a belt and hit a plate; they break where they hit
+    Chute,
+    /// A lump between two jaws, one of which swings
+    Crusher,
+    /// A drum turns with balls and lumps: its power
+    Mill,
+    /// Pellets run out of a silo through a slot
+    Silo,
+    /// Four-point bending of a bar
+    Bending,
+    /// A disc is pressed across its diameter until it splits
+    Brazilian,
+    /// Compression of a cylinder between plates
+    Compression,
+}
+
+/// The number that defines the situation: its option, what it is, and its default.
+#[derive(Debug, Clone)]
+pub(super) struct Situation {
+    pub(super) option: &'static str,
+    pub(super) what: &'static str,
+    pub(super) dimension: &'static Dimension,
+    pub(super) default_si: f64,
+}
+
+/// The spheres that a body is packed with, if no diameter is given.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fineness {
+    /// Spheres across the thinnest part that are wanted.
+    pub(super) across: f64,
+    pub(super) most_spheres: usize,
+    /// The body cannot break: few spheres across do no harm.
+    pub(super) is_rigid: bool,
+}
+
+/// The body whose scene is written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Measured {
+    /// Extents along x, y and z, m.
+    pub(super) extent_m: [f64; 3],
+    pub(super) mass_kg: f64,
+    pub(super) density_kg_m3: f64,
+}
+
+impl Measured {
+    pub(super) fn size_m(&self) -> f64 {
+        self.extent_m.into_iter().fold(0.0, f64::max)
+    }
+}
+
+impl Template {
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            Self::Drop => include_str!("templates/drop.toml"),
+            Self::DropWeight => include_str!("templates/drop-weight.toml"),
+            Self::Chute => include_str!("templates/chute.toml"),
+            Self::Crusher => include_str!("templates/crusher.toml"),
+            Self::Mill => include_str!("templates/mill.toml"),
+            Self::Silo => include_str!("templates/silo.toml"),
+            Self::Bending => include_str!("templates/bending.toml"),
+            Self::Brazilian => include_str!("templates/brazilian.toml"),
+            Self::Compression => include_str!("templates/compression.toml"),
+        }
+    }
+
+    /// As on the command line.
+    pub(super) fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or(String::new(), |value| value.get_name().to_owned())
+    }
+
+    /// The option of its situation.
+    pub(super) fn option(self) -> Option<&'static str> {
+        match self {
+            Self::Drop | Self::DropWeight => Some("--height"),
+            Self::Chute | Self::Mill => Some("--speed"),
+            Self::Crusher | Self::Silo => Some("--gap"),
+            Self::Bending | Self::Brazilian | Self::Compression => None,
+        }
+    }
+
+    pub(super) fn shape(self) -> Shape {
+        match self {
+            Self::Drop => Shape::Cylinder(30.0, 24.0),
+            Self::Chute => Shape::Block([50.0, 45.0, 40.0]),
+            Self::Crusher => Shape::Cylinder(60.0, 60.0),
+            Self::Mill => Shape::Block([30.0, 25.0, 20.0]),
+            Self::Silo => Shape::Cylinder(8.0, 8.0),
+            Self::Bending => Shape::Block([105.0, 30.0, 30.0]),
+            Self::DropWeight | Self::Brazilian => Shape::Disc(40.0, 30.0),
+            Self::Compression => Shape::Cylinder(30.0, 60.0),
+        }
+    }
+
+    pub(super) fn density_kg_m3(self) -> f64 {
+        match self {
+            Self::Drop => 1500.0,
+            Self::Chute | Self::Crusher | Self::Bending => 2050.0,
+            Self::DropWeight | Self::Brazilian | Self::Compression => 2650.0,
+            Self::Mill => 2700.0,
+            Self::Silo => 1200.0,
+        }
+    }
+
+    pub(super) fn fineness(self) -> Fineness {
+        let (across, most_spheres) = match self {
+            Self::Mill => (3.4, 300),
+            Self::Silo => (3.2, 100),
+            Self::Bending => (9.8, 6000),
+            _ => (9.8, 3000),
+        };
+        Fineness {
+            across,
+            most_spheres,
+            is_rigid: matches!(self, Self::Mill | Self::Silo),
+        }
+    }
+
+    /// None for tests of the laboratory whose walls press until the body breaks.
+    pub(super) fn situation(self, body: &Measured) -> Option<Situation> {
+        let size_m = body.size_m();
+        let critical_rad_s = (GRAVITY_M_S2 / drum_radius_m(body)).sqrt();
+        let (what, dimension, default_si) = match self {
+            Self::Drop => ("of the fall", &LENGTH, 1.0),
+            Self::DropWeight => ("of the fall of the weight", &LENGTH, 0.3),
+            Self::Chute => ("of the belt", &VELOCITY, 2.0),
+            Self::Mill => ("of the drum", &ANGULAR_VELOCITY, 0.7 * critical_rad_s),
+            Self::Crusher => ("between the jaws", &LENGTH, body.extent_m[0] / 3.0),
+            Self::Silo => ("width of the slot", &LENGTH, 5.0 * size_m),
+            Self::Bending | Self::Brazilian | Self::Compression => return None,
+        };
+        Some(Situation {
+            option: self.option()?,
+            what,
+            dimension,
+            default_si,
+        })
+    }
+
+    /// Refuses a body that the scene has no use for. `situation_si`: the number of the situation,
+    /// or 0 before it is known.
+    pub(super) fn check(self, extent_m: [f64; 3], situation_si: f64) -> Result<()> {
+        let [x, y, z] = extent_m;
+        let shown = |length: f64| Value::length(length).text();
+        let problem = match self {
+            Self::Bending if x < 3.0 * y.max(z) => format!(
+                "it is {} along x, less than 3 times its width of {} or its height of {}",
+                shown(x),
+                shown(y),
+                shown(z)
+            ),
+            Self::Crusher if situation_si >= x => format!(
+                "{} is not below {}, the width of the body along x",
+                shown(situation_si),
+                shown(x)
+            ),
+            _ => return Ok(()),
+        };
+        let remedy = match self {
+            Self::Bending => "take a bar that lies along x and is loaded along z",
+            _ => "take a gap through which the body does not fall",
+        };
+        Err(Diagnostic::input("", problem, remedy))
+    }
+
+    /// What the marks of the text stand for.
+    pub(super) fn values(self, body: &Measured, situation_si: f64) -> Vec<(&'static str, Value)> {
+        let [x, y, z] = body.extent_m;
+        let size = body.size_m();
+        let mut values = vec![
+            ("x", Value::length(x)),
+            ("y", Value::length(y)),
+            ("z", Value::length(z)),
+            ("size", Value::length(size)),
+        ];
+        values.extend(match self {
+            Self::Drop => {
+                // Waves cross the body in a time that goes with its size.
+                let impact = 1e-3 * (size / 30e-3) * (body.density_kg_m3 / 1500.0).sqrt();
+                let height = ("height", Value::length(situation_si));
+                vec![height, ("impact", Value::new(impact, "s"))]
+            }
+            Self::DropWeight => {
+                let impact = 1e-3 * (size / 40e-3) * (body.density_kg_m3 / 2650.0).sqrt();
+                vec![
+                    ("height", Value::length(situation_si)),
+                    ("impact", Value::new(impact, "s")),
+                    ("weight_mass", Value::new(50.0 * body.mass_kg, "kg")),
+                ]
+            }
+            Self::Chute => {
+                let reach = 0.1 * situation_si + size;
+                let fall = 0.5 * GRAVITY_M_S2 * (reach / situation_si).powi(2);
+                vec![
+                    ("speed", Value::new(situation_si, "m/s")),
+                    ("reach", Value::length(reach)),
+                    ("fall", Value::length(fall)),
+                    ("ride", Value::new(size / situation_si, "s")),
+                    ("second", Value::new(1.0, "s")),
+                    ("rate", Value::new(0.2 * situation_si / size, "/s")),
+                ]
+            }
+            Self::Crusher => {
+                let nip = HEIGHT_OVER_WIDTH * (1.06 * x - situation_si);
+                vec![
+                    ("gap", Value::length(situation_si)),
+                    ("nip", Value::length(nip)),
+                    ("top", Value::length(nip + 1.3 * z)),
+                ]
+            }
+            Self::Mill => vec![
+                ("speed", Value::new(situation_si, "rad/s")),
+                ("radius", Value::length(drum_radius_m(body))),
+                (
+                    "ball_mass",
+                    Value::new(7800.0 * PI / 6.0 * (0.6 * size).powi(3), "kg"),
+                ),
+            ],
+            Self::Silo => {
+                let fall = (40.0 * size / GRAVITY_M_S2).sqrt();
+                vec![
+                    ("gap", Value::length(situation_si)),
+                    ("fall", Value::new(fall, "s")),
+                    ("fall_speed", Value::new(GRAVITY_M_S2 * fall, "m/s")),
+                    ("rate", Value::new(160.0 / fall, "/s")),
+                ]
+            }
+            Self::Bending | Self::Brazilian | Self::Compression => vec![],
+        });
+        values
+    }
+
+    /// Radius and length of the drum of a mill, m.
+    pub(super) fn drum_m(self, body: &Measured) -> Option<[f64; 2]> {
+        (self == Self::Mill).then(|| [drum_radius_m(body), 3.2 * body.size_m()])
+    }
+}
+
+fn drum_radius_m(body: &Measured) -> f64 {
+    5.0 * body.size_m()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fill::filled;
+    use super::*;
+
+    /// Every mark of every text has a value.
+    #[test]
+    fn texts_are_filled() {
+        for template in Template::value_variants() {
+            let body = Measured {
+                extent_m: [0.03, 0.02, 0.01],
+                mass_kg: 0.01,
+                density_kg_m3: 2000.0,
+            };
+            let situation = template.situation(&body);
+            assert_eq!(
+                situation.as_ref().map(|known| known.option),
+                template.option()
+            );
+            let si = situation.map_or(0.0, |situation| situation.default_si);
+            let text = filled(template.text(), "mass = 1", &template.values(&body, si));
+            for wrong in ["@", "NaN", "inf"] {
+                assert!(!text.contains(wrong), "{template:?}: {text}");
+            }
+        }
+    }
+}
