@@ -13,6 +13,7 @@ use dem_io::disjoint::DisjointSets;
 use dem_io::{Diagnostic, Result, read_input};
 use dem_report::report;
 use dem_results::folder::names;
+use dem_results::summary::Verdict;
 use dem_results::{
     Existing, Frame, FrameFiles, NamedArray, ResultsFolder, Values, WallFiles, WallFrame,
     WallTriangles, write_json,
@@ -178,7 +179,7 @@ fn write_summary(target: &ResultsFolder, manifest: &Manifest, came: &Came) -> Re
         "engine": "LAMMPS",
         "scene": manifest.scene,
         "simulated_s": came.last_s,
-        "verdict": { "sound": false, "warnings": warnings },
+        "verdict": Verdict::new(warnings, Vec::new()),
     });
     write_json(&target.file(names::SUMMARY), &summary)?;
     let page = report(target.path(), &summary.to_string())?;

@@ -38,7 +38,10 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
         }
         let named = named(scene, name);
         let about = &body.about;
-        let mut coarse = about.coarse();
+        let coarse = match about.particles_across {
+            Some(_) => about.coarse(),
+            None => few_across_box(body),
+        };
         let by = about.program.as_deref().unwrap_or_default();
         let by = by.split(' ').next().filter(|by| !by.is_empty());
         let by = by.unwrap_or("the program that made it");
@@ -47,7 +50,6 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
         if about.program.is_none() && about.warnings.is_empty() {
             let seen = faults(body).into_iter();
             (quality.warnings).extend(seen.map(|text| format!("{named}: {text}")));
-            coarse = coarse.or_else(|| few_across_box(body));
         }
         if let Some(coarse) = coarse.filter(|_| !is_calibrated(scene, name, body)) {
             quality.coarse.push(format!("{named}: {coarse}"));

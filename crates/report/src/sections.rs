@@ -50,10 +50,8 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
         }
         Trust::Doubtful => format!("Doubtful: {}.", counted(warnings.len(), "warning")),
     };
-    let reasons = match word {
-        Trust::Doubtful => warnings,
-        Trust::Coarse | Trust::Sound => summary.verdict.coarse.clone(),
-    };
+    let mut reasons = warnings;
+    reasons.extend(summary.verdict.coarse.iter().cloned());
     page.verdict(&headline, word.word(), &reasons);
     if !summary.has_results() {
         return;

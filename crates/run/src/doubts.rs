@@ -70,7 +70,10 @@ impl Monitors {
                 continue;
             }
             let when = &rule.when;
+            let touched = (!when.touches.is_empty())
+                .then(|| format!("it touches '{}'", when.touches.join("' or '")));
             let trigger = [
+                touched,
                 when.enters
                     .as_ref()
                     .map(|region| format!("it enters '{region}'")),

@@ -11,14 +11,23 @@ const T_H: f64 = 3.6;
 /// The pieces that an outlet has taken: size of the sieve that each passes, m, and mass, kg.
 type Taken = Vec<[f64; 2]>;
 
-/// Adds a row for each outlet, if there are several or one has taken pieces. `until_s`: length of
-/// the run.
+/// Adds a row for each outlet that has taken pieces. `until_s`: length of the run.
 pub(crate) fn add_outlets(page: &mut Page, discharge_csv: &str, until_s: f64) {
     let Some(outlets) = taken(discharge_csv).filter(|outlets| !outlets.is_empty()) else {
         return;
     };
-    page.paragraph("Discharged through each outlet, with the mean mass flow of the run:");
-    let names = ["pieces", "mass", "mass flow", "", "d10", "d50", "d80"];
+    page.paragraph(
+        "Discharged through each outlet; mean mass flows from the start to the end of the run:",
+    );
+    let names = [
+        "pieces",
+        "mass",
+        "mean flow",
+        "the same",
+        "d10",
+        "d50",
+        "d80",
+    ];
     let mut columns = vec![Column::text("outlet")];
     columns.extend(names.map(Column::number));
     let row = |(name, mut pieces): (String, Taken)| {

@@ -221,7 +221,7 @@ impl Trust {
 
 /// Reliability of the result of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(from = "Stored")]
 pub struct Verdict {
     /// In one word.
     pub word: Trust,
@@ -235,6 +235,33 @@ pub struct Verdict {
     /// Names of figures of the fragments that the size of the spheres decides, not the material.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unresolved: Vec<String>,
+}
+
+/// A verdict as it is read, perhaps from a program that had no word for it.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Stored {
+    word: Option<Trust>,
+    sound: bool,
+    warnings: Vec<String>,
+    coarse: Vec<String>,
+    unresolved: Vec<String>,
+}
+
+impl From<Stored> for Verdict {
+    fn from(stored: Stored) -> Self {
+        let word = match stored.sound {
+            true => Trust::Sound,
+            false => Trust::Doubtful,
+        };
+        Self {
+            word: stored.word.unwrap_or(word),
+            sound: stored.sound,
+            warnings: stored.warnings,
+            coarse: stored.coarse,
+            unresolved: stored.unresolved,
+        }
+    }
 }
 
 impl Verdict {

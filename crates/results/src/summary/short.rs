@@ -90,6 +90,7 @@ impl Summary {
         if reasons.len() > SHOWN {
             writeln!(out, "             and {} more", reasons.len() - SHOWN)?;
         }
+        self.write_unresolved(out)?;
         writeln!(out, "verdict      {}", self.verdict_text())?;
         if let Some(folder) = &self.results {
             writeln!(

@@ -347,16 +347,22 @@ impl Summary {
                 writeln!(f, "{name:12} {}", visible(reason))?;
             }
         }
-        let all = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"));
-        if let (false, Some(all)) = (self.verdict.unresolved.is_empty(), all) {
-            writeln!(
-                f,
-                "* unresolved {} of the fragments: below {RESOLVED_DIAMETERS} sphere diameters ({} mm) the spheres decide, not the material",
-                self.verdict.unresolved.join(", "),
-                significant(1e3 * all.resolved_from_m, 3)
-            )?;
-        }
+        self.write_unresolved(f)?;
         writeln!(f, "verdict      {}", self.verdict_text())
+    }
+
+    /// What the marks of sizes mean, if there are any.
+    pub(super) fn write_unresolved(&self, f: &mut impl Write) -> fmt::Result {
+        let all = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"));
+        let Some(all) = all.filter(|_| !self.verdict.unresolved.is_empty()) else {
+            return Ok(());
+        };
+        writeln!(
+            f,
+            "* unresolved {} of the fragments: below {RESOLVED_DIAMETERS} sphere diameters ({} mm) the spheres decide, not the material",
+            self.verdict.unresolved.join(", "),
+            significant(1e3 * all.resolved_from_m, 3)
+        )
     }
 }
 

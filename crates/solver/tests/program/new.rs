@@ -258,7 +258,7 @@ fn wrong_answers_are_refused() {
         ),
         (
             &["crusher", "--gap", "61 mm"],
-            "--gap: 61 mm is not below 60 mm",
+            "--gap: 61 mm is not between 6 mm and 54 mm",
         ),
         (
             &["mill", "--speed", "3 m"],

@@ -109,7 +109,7 @@ fn situation<R: BufRead, W: Write>(
     };
     let read = |text: &str| {
         let si = positive(text, situation.dimension)?;
-        template.check(body.extent_m, si).map(|()| si)
+        situation.check(si).map(|()| si)
     };
     let given = arguments.situation(situation.option);
     let answer = questions.answer(&asked, given, read)?;
@@ -196,7 +196,7 @@ fn read_mass(text: &str, volume_m3: f64) -> Result<f64> {
 fn read_shape(path: &Path, template: Template) -> Result<Surface> {
     let bytes = read_stl_file(path).map_err(|error| explain_read(path, &error, "an STL file"))?;
     let surface = surface_of(&bytes, &path.display().to_string())?;
-    template.check(extent_m(&surface), 0.0)?;
+    template.check(extent_m(&surface))?;
     Ok(surface)
 }
 

@@ -23,7 +23,8 @@ pub(super) fn packed(
     diameter: Option<&Sizes>,
 ) -> Result<(Body, Option<String>)> {
     if let Some(sizes) = diameter {
-        let (body, report) = pack(surface, sizes.clone())?;
+        let packed = pack(surface, sizes.clone()).map_err(advised);
+        let (body, report) = packed.map_err(|error| error.within("--diameter"))?;
         return Ok((body, remark(&report, fineness, None)));
     }
     let extent_m = surface.extent().map(|extent| extent * surface.unit_m);

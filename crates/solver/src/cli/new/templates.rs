@@ -38,13 +38,15 @@ pub(super) enum Template {
     Compression,
 }
 
-/// The number that defines the situation: its option, what it is, and its default.
+/// The number that defines the situation: its option, what it is, its default, and the range in
+/// which the scene makes sense.
 #[derive(Debug, Clone)]
 pub(super) struct Situation {
     pub(super) option: &'static str,
     pub(super) what: &'static str,
     pub(super) dimension: &'static Dimension,
     pub(super) default_si: f64,
+    pub(super) range_si: [f64; 2],
 }
 
 /// The spheres that a body is packed with, if no diameter is given.
@@ -69,6 +71,20 @@ pub(super) struct Measured {
 impl Measured {
     pub(super) fn size_m(&self) -> f64 {
         self.extent_m.into_iter().fold(0.0, f64::max)
+    }
+}
+
+impl Situation {
+    /// Refuses a number outside the range.
+    pub(super) fn check(&self, si: f64) -> Result<()> {
+        let [low, high] = self.range_si;
+        if (low..=high).contains(&si) {
+            return Ok(());
+        }
+        let [low, si, high] = [low, si, high].map(|si| Value::new(si, self.dimension.si).text());
+        let problem = format!("{si} is not between {low} and {high}");
+        let remedy = format!("write a {} in this range", self.dimension.name);
+        Err(Diagnostic::input("", problem, remedy))
     }
 }
 
@@ -144,13 +160,28 @@ impl Template {
     pub(super) fn situation(self, body: &Measured) -> Option<Situation> {
         let size_m = body.size_m();
         let critical_rad_s = (GRAVITY_M_S2 / drum_radius_m(body)).sqrt();
-        let (what, dimension, default_si) = match self {
-            Self::Drop => ("of the fall", &LENGTH, 1.0),
-            Self::DropWeight => ("of the fall of the weight", &LENGTH, 0.3),
-            Self::Chute => ("of the belt", &VELOCITY, 2.0),
-            Self::Mill => ("of the drum", &ANGULAR_VELOCITY, 0.7 * critical_rad_s),
-            Self::Crusher => ("between the jaws", &LENGTH, body.extent_m[0] / 3.0),
-            Self::Silo => ("width of the slot", &LENGTH, 5.0 * size_m),
+        let width_m = body.extent_m[0];
+        let (what, dimension, default_si, range_si) = match self {
+            Self::Drop => ("of the fall", &LENGTH, 1.0, [1e-3, 1e3]),
+            Self::DropWeight => ("of the fall of the weight", &LENGTH, 0.3, [1e-3, 1e2]),
+            Self::Chute => ("of the belt", &VELOCITY, 2.0, [0.1, 20.0]),
+            Self::Mill => {
+                let range = [0.05, 2.0].map(|factor| factor * critical_rad_s);
+                (
+                    "of the drum",
+                    &ANGULAR_VELOCITY,
+                    0.7 * critical_rad_s,
+                    range,
+                )
+            }
+            Self::Crusher => {
+                let range = [0.1, 0.9].map(|factor| factor * width_m);
+                ("between the jaws", &LENGTH, width_m / 3.0, range)
+            }
+            Self::Silo => {
+                let range = [1.0, 10.0].map(|factor| factor * size_m);
+                ("width of the slot", &LENGTH, 5.0 * size_m, range)
+            }
             Self::Bending | Self::Brazilian | Self::Compression => return None,
         };
         Some(Situation {
@@ -158,32 +189,20 @@ impl Template {
             what,
             dimension,
             default_si,
+            range_si,
         })
     }
 
-    /// Refuses a body that the scene has no use for. `situation_si`: the number of the situation,
-    /// or 0 before it is known.
-    pub(super) fn check(self, extent_m: [f64; 3], situation_si: f64) -> Result<()> {
+    /// Refuses a body that the scene has no use for.
+    pub(super) fn check(self, extent_m: [f64; 3]) -> Result<()> {
         let [x, y, z] = extent_m;
-        let shown = |length: f64| Value::length(length).text();
-        let problem = match self {
-            Self::Bending if x < 3.0 * y.max(z) => format!(
-                "it is {} along x, less than 3 times its width of {} or its height of {}",
-                shown(x),
-                shown(y),
-                shown(z)
-            ),
-            Self::Crusher if situation_si >= x => format!(
-                "{} is not below {}, the width of the body along x",
-                shown(situation_si),
-                shown(x)
-            ),
-            _ => return Ok(()),
-        };
-        let remedy = match self {
-            Self::Bending => "take a bar that lies along x and is loaded along z",
-            _ => "take a gap through which the body does not fall",
-        };
+        if self != Self::Bending || x >= 3.0 * y.max(z) {
+            return Ok(());
+        }
+        let [x, y, z] = [x, y, z].map(|length| Value::length(length).text());
+        let problem =
+            format!("it is {x} along x, less than 3 times its width of {y} or its height of {z}");
+        let remedy = "take a bar that lies along x and is loaded along z";
         Err(Diagnostic::input("", problem, remedy))
     }
 
