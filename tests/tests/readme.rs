@@ -497,32 +497,26 @@ fn commands_in_comments_of_scenes_and_studies_are_not_refused() {
 #[test]
 fn report_is_explained() {
     let folder = tempfile::tempdir().unwrap();
-    let output = dem_pack()
-        .arg(root().join("data/shapes/tablet.stl"))
-        .args([
-            "--diameter",
-            "1mm..1.2mm",
-            "--particle-density",
-            "2000",
-            "--solid-density",
-            "1500",
-            "-o",
-        ])
-        .arg(folder.path().join("tablet.vtp"))
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let report = String::from_utf8(output.stdout).unwrap();
     let page = read("doc/packing.md");
-    for line in report.lines().skip(1) {
-        let name = line.split("  ").next().unwrap().split(':').next().unwrap();
-        assert!(
-            page.contains(&format!("`{name}`")),
-            "the table of doc/packing.md does not explain '{name}':\n{report}"
-        );
+    for whole in [None, Some("--verbose")] {
+        let output = dem_pack()
+            .arg(root().join("data/shapes/tablet.stl"))
+            .args(["--diameter", "1mm..1.2mm", "--particle-density", "2000"])
+            .args(["--solid-density", "1500"])
+            .args(whole)
+            .arg("-o")
+            .arg(folder.path().join("tablet.vtp"))
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let report = String::from_utf8(output.stdout).unwrap();
+        for line in report.lines().skip(1) {
+            let name = line.split("  ").next().unwrap().split(':').next().unwrap();
+            assert!(
+                page.contains(&format!("`{name}`")),
+                "the table of doc/packing.md does not explain '{name}':\n{report}"
+            );
+        }
     }
 }

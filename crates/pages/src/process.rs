@@ -12,7 +12,7 @@ use crate::table::{Table, write};
 /// Cakes and lumps can break: bodies, and their shapes.
 const BREAKABLE: [(&str, &str); 2] = [("cake", "filter-cake"), ("lump", "bar")];
 /// How they are bonded: words, and the text of their `[replacement]`.
-const WAYS: [(&str, &str); 5] = [
+const WAYS: [(&str, &str); 4] = [
     ("rigid throughout", "{ when = { time = \"1000 s\" } }"),
     (
         "replaced at the plate, and restored behind it",
@@ -22,7 +22,6 @@ const WAYS: [(&str, &str); 5] = [
         "replaced at the plate",
         "{ when = { enters = \"impact\" } }",
     ),
-    ("as in the scene: at the plate and by stress, restored", ""),
     ("bonded from the start", "{ when = { time = 0 } }"),
 ];
 /// Diameters of their spheres in the comparison of ways, and in the runs with 300 bodies.
@@ -117,9 +116,9 @@ pub(crate) fn process(bench: &Bench) -> Result<(), Failed> {
     let [mut of_ways, mut of_minute, mut of_flows] = tables();
     let files = packed(bench, OF_WAYS)?;
     for (way, has_dif) in ways() {
-        let rule = WAYS[way].1;
-        let rules = BREAKABLE.map(|(body, _)| format!("replacement.{body}={rule}"));
-        let mut set: Vec<String> = rules.into_iter().filter(|_| !rule.is_empty()).collect();
+        let mut set = BREAKABLE
+            .map(|(body, _)| format!("replacement.{body}={}", WAYS[way].1))
+            .to_vec();
         if !has_dif {
             set.push("bonds.cake.failure.rate_strengthening=false".to_owned());
         }

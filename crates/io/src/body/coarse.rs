@@ -1,6 +1,5 @@
 //! Bodies with few particles across: their results depend on the particles.
 
-use super::About;
 use crate::units::{show_length, significant};
 
 /// Number of particles across the thinnest part below which the result reflects the particles
@@ -18,18 +17,6 @@ pub fn few_across(particles_across: f64, part: &str, thickness_m: f64) -> Option
             show_length(significant_down(thickness_m / ENOUGH_ACROSS)),
         )
     })
-}
-
-impl About {
-    /// A sentence on a body with few particles across its thinnest part. None: there are enough, or
-    /// their number is unknown.
-    pub fn coarse(&self) -> Option<String> {
-        few_across(
-            self.particles_across?,
-            "the thinnest part",
-            self.thinnest_part_m?,
-        )
-    }
 }
 
 /// Rounded down to two digits.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::coarse::few_across;
 use super::histories::{BondColumn, hashed_others, hashed_sums};
 use crate::diagnostic::Result;
 
@@ -30,6 +31,18 @@ pub struct About {
     pub particles_across: Option<f64>,
     /// Warnings of the program that made it, one sentence each.
     pub warnings: Vec<String>,
+}
+
+impl About {
+    /// A sentence on a body with few particles across its thinnest part. None: there are enough, or
+    /// their number is unknown.
+    pub fn coarse(&self) -> Option<String> {
+        few_across(
+            self.particles_across?,
+            "the thinnest part",
+            self.thinnest_part_m?,
+        )
+    }
 }
 
 /// Spheres joined by bonds. SI units.

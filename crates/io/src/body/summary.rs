@@ -191,17 +191,22 @@ impl fmt::Display for BodySummary {
         if !made.is_empty() {
             writeln!(f, "made       {}", made.join(", "))?;
         }
-        if let Some(coarse) = about.coarse() {
-            writeln!(f, "coarse     {coarse}")?;
-        }
-        for warning in &about.warnings {
-            writeln!(f, "warning    when it was made: {warning}")?;
-        }
-        Ok(())
+        self.write_quality(f)
     }
 }
 
 impl BodySummary {
+    /// Whether few particles lie across it, and warnings of the program that made it.
+    fn write_quality(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(coarse) = self.about.coarse() {
+            writeln!(f, "coarse     {coarse}")?;
+        }
+        for warning in &self.about.warnings {
+            writeln!(f, "warning    when it was made: {warning}")?;
+        }
+        Ok(())
+    }
+
     /// The mass of its shape, its centre of mass and its moments of inertia.
     fn write_shape_mass(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(difference) = self.mass_difference_percent {
