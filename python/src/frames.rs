@@ -29,7 +29,7 @@ pub(crate) fn read_frame(
         };
         arrays.set_item(name, column)?;
     }
-    Ok((frame.time_s, frame.texts("body_names").to_vec(), arrays))
+    Ok((frame.time_s, frame.body_names, arrays))
 }
 
 /// The time, the names of the walls, and their arrays.
