@@ -261,6 +261,14 @@ fn wrong_answers_are_refused() {
             "--gap: 61 mm is not between 6 mm and 54 mm",
         ),
         (
+            &["silo", "--gap", "1 mm"],
+            "--gap: 1 mm is not between 8 mm and 80 mm",
+        ),
+        (
+            &["chute", "--speed", "1e6 m/s"],
+            "is not between 0.1 m/s and 20 m/s",
+        ),
+        (
             &["mill", "--speed", "3 m"],
             "--speed: '3 m' is not an angular velocity",
         ),
