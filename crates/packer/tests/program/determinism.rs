@@ -156,7 +156,7 @@ fn bodies_of_data_can_be_made_again() {
         .lines()
         .filter(|line| line.starts_with("dem-pack "))
         .collect();
-    assert_eq!(commands.len(), 15);
+    assert_eq!(commands.len(), 16);
     let volume = |body: &dem_io::Body| body.radii.iter().map(|r| r.powi(3)).sum::<f64>();
     for command in commands {
         let mut words: Vec<&str> = command.split(' ').skip(1).collect();
