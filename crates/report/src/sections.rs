@@ -46,7 +46,8 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
     let headline = match word {
         Trust::Sound => "Sound: all checks passed.".to_owned(),
         Trust::Coarse => {
-            "Coarse: the result is that of these spheres, others would give another.".to_owned()
+            "Coarse: the result is that of these spheres, smaller ones would give another."
+                .to_owned()
         }
         Trust::Doubtful => format!("Doubtful: {}.", counted(warnings.len(), "warning")),
     };

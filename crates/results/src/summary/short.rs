@@ -107,7 +107,8 @@ impl Summary {
         match self.verdict.word {
             Trust::Sound => "sound".to_owned(),
             Trust::Coarse => {
-                "coarse: the result is that of these spheres, others would give another".to_owned()
+                "coarse: the result is that of these spheres, smaller ones would give another"
+                    .to_owned()
             }
             Trust::Doubtful => match self.verdict.warnings.len() {
                 1 => "doubtful: 1 warning".to_owned(),
