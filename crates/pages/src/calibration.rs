@@ -1,5 +1,5 @@
-//! doc/calibration.md: bonds calibrated for spheres of several sizes. doc/sphere-size.md: the scatter
-//! of modulus and strength over packings of a bar in tension.
+//! doc/calibration.md: bonds calibrated for spheres of several sizes. doc/sphere-size.md: the
+//! scatter of modulus and strength over packings of a bar in tension.
 
 use dem_calibration::{read_record, sizes as table_of};
 use dem_io::units::significant;

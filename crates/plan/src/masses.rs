@@ -22,9 +22,9 @@ use dem_physics::shape::inertia::of_spheres;
 /// Smallest difference that is reported, percent.
 const WORTH_A_NOTE: f64 = 5.0;
 /// Foams aside, no solid is lighter, kg/m3.
-const LIGHTEST_KG_M3: f64 = 20.0;
+pub const LIGHTEST_KG_M3: f64 = 20.0;
 /// No solid is heavier, kg/m3.
-const HEAVIEST_KG_M3: f64 = 23_000.0;
+pub const HEAVIEST_KG_M3: f64 = 23_000.0;
 
 /// Mass of each body of a scene, by name: in its initial state, or as in its file if it comes
 /// through an inlet. `about`: information on the bodies.

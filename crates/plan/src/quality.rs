@@ -1,5 +1,5 @@
-//! The quality of bonded bodies: warnings of the programs that made them, those about bodies that no
-//! program has looked at, and bodies with few particles across.
+//! The quality of bonded bodies: warnings of the programs that made them, those about bodies that
+//! no program has looked at, and bodies with few particles across.
 
 use std::collections::BTreeMap;
 
@@ -74,7 +74,7 @@ fn is_calibrated(scene: &Scene, name: &str, body: &Body) -> bool {
         .get(name)
         .and_then(|entry| entry.bond_kind.as_ref());
     let kind = kind.and_then(|kind| scene.bonds.get(kind));
-    let mean_m = 2.0 * body.radii.iter().sum::<f64>() / body.radii.len() as f64;
+    let mean_m = body.mean_diameter_m();
     kind.and_then(|kind| kind.calibrated_diameter_m)
         .is_some_and(|calibrated_m| (mean_m / calibrated_m - 1.0).abs() <= SAME_DIAMETER)
 }
@@ -100,7 +100,7 @@ fn faults(body: &Body) -> Vec<String> {
             count - largest
         ));
     }
-    if !is_packing(body) {
+    if packing_thickness_m(body).is_none() {
         return warnings;
     }
     let bonds = body.bonds.len() as f64 / count as f64;
@@ -113,32 +113,23 @@ fn faults(body: &Body) -> Vec<String> {
     warnings
 }
 
-/// Whether the spheres of a body fill a shape: a bar of single spheres is no packing, as its bonds
-/// are the material.
-fn is_packing(body: &Body) -> bool {
-    let [_, width_m, _] = box_m(body);
-    let diameter_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
-    body.radii.len() >= FEWEST && width_m > CHAIN * diameter_m
-}
-
 /// A sentence on a packing with few particles across its box.
 fn few_across_box(body: &Body) -> Option<String> {
-    let [_, _, thickness_m] = box_m(body);
+    let thickness_m = packing_thickness_m(body)?;
     let volume = |radius: &f64| radius.powi(3);
     let cubes: f64 = body.radii.iter().map(volume).sum();
     let mean_m = 2.0 * body.radii.iter().map(|r| r * volume(r)).sum::<f64>() / cubes;
-    let few = few_across(
-        thickness_m / mean_m,
-        "the thinnest side of its box",
-        thickness_m,
-    );
-    few.filter(|_| is_packing(body))
+    let side = "the thinnest side of its box";
+    few_across(thickness_m / mean_m, side, thickness_m)
 }
 
-/// Lengths of the box of a body, descending, m.
-fn box_m(body: &Body) -> [f64; 3] {
+/// The smallest length of the box of a body whose spheres fill a shape, m. None: it is a bar of
+/// single spheres or of a few, whose bonds are the material.
+fn packing_thickness_m(body: &Body) -> Option<f64> {
     let spheres: Vec<Sphere> = (body.positions.iter().zip(&body.radii))
         .map(|(place, radius)| Sphere::of_unit_density(*place, *radius))
         .collect();
-    box_lengths_m(&spheres)
+    let [_, width_m, thickness_m] = box_lengths_m(&spheres);
+    let diameter_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
+    (spheres.len() >= FEWEST && width_m > CHAIN * diameter_m).then_some(thickness_m)
 }

@@ -109,7 +109,8 @@ impl Page {
         }
     }
 
-    /// Adds whether the result can be trusted, in `word` ("sound", "coarse" or "doubtful"), and why.
+    /// Adds whether the result can be trusted, in `word` ("sound", "coarse" or "doubtful"), and
+    /// why.
     pub fn verdict(&mut self, headline: &str, word: &str, reasons: &[String]) {
         let class = format!("verdict {word}");
         self.content.push(html! {

@@ -11,7 +11,7 @@ use dem_io::text::counted;
 use dem_io::units::show_quantity;
 use dem_plots::Page;
 use dem_results::Summary;
-use dem_results::summary::Trust;
+use dem_results::summary::{COARSE, Trust};
 
 use crate::folder::Folder;
 
@@ -45,10 +45,7 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
     let word = summary.verdict.word;
     let headline = match word {
         Trust::Sound => "Sound: all checks passed.".to_owned(),
-        Trust::Coarse => {
-            "Coarse: the result is that of these spheres, smaller ones would give another."
-                .to_owned()
-        }
+        Trust::Coarse => format!("Coarse: {COARSE}."),
         Trust::Doubtful => format!("Doubtful: {}.", counted(warnings.len(), "warning")),
     };
     let mut reasons = warnings;

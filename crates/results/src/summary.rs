@@ -12,7 +12,7 @@ mod sizes;
 mod text;
 
 pub use balance::{Balance, ENERGIES, Energy, EnergyKind};
-pub use contents::{Summary, Trust, Unfinished, Verdict};
+pub use contents::{COARSE, Summary, Trust, Unfinished, Verdict};
 pub use equilibrium::EquilibriumSummary;
 pub use inputs::{InputBody, InputFile, Inputs};
 pub use measured::Measured;

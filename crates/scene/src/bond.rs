@@ -46,7 +46,7 @@ pub struct BondKind {
     pub plasticity: Option<BondPlasticity>,
     /// `contact_beside_bond`: the contact law of the two ends acts beside the bond.
     pub contact_beside_bond: bool,
-    /// `calibrated_diameter`: mean diameter of the spheres that these bonds were calibrated with, m.
+    /// `calibrated_diameter`: mean diameter of the spheres with which they were calibrated, m.
     pub calibrated_diameter_m: Option<f64>,
 }
 

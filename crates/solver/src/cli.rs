@@ -81,8 +81,8 @@ pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Does what was requested. `interrupt` tells a run to stop; `tell` hears how far the run of a scene
-/// or a study has come.
+/// Does what was requested. `interrupt` tells a run to stop; `tell` hears how far the run of a
+/// scene or a study has come.
 pub fn run(arguments: &Arguments, interrupt: &Interrupt, tell: Tell<'_>) -> Result<()> {
     match &arguments.command {
         Some(Command::Check {

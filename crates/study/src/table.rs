@@ -285,7 +285,7 @@ fn not_sound(runs: &[Run], of_runs: &[Option<&Done>]) -> Vec<String> {
         // Key of a kind, the number of its runs, and the first of them with its reason.
         let mut kinds: Vec<(String, usize, usize, &str)> = Vec::new();
         for (number, verdict) in with_word() {
-            for reason in verdict.reasons() {
+            for reason in verdict.reasons().1 {
                 let key = kind_of(reason);
                 match kinds.iter_mut().find(|kind| kind.0 == key) {
                     Some(kind) => kind.1 += 1,

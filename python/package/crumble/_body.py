@@ -129,8 +129,8 @@ def pack(
     `diameter` is as for `--diameter`: "2.5mm", "2mm..3mm", "lognormal:2.5mm,0.3mm,1.5mm..4mm",
     "sieve:FILE.csv", ...; a number is metres. The settings are the options of `dem-pack` (see
     `doc/packing.md`), their defaults are those of the program. `out` is the file to write, whose
-    folder is made; without it the body is in memory only. `progress=True` shows the progress on standard error; a function
-    is called with the fraction done and the name of the stage.
+    folder is made; without it the body is in memory only. `progress=True` shows the progress on
+    standard error; a function is called with the fraction done and the name of the stage.
 
     Raises `Error` with the message of the program, warns `DoubtfulResult` with the warnings of
     the report. Ctrl-C raises `KeyboardInterrupt` and leaves no file.

@@ -36,9 +36,10 @@ def run(
 ) -> Results:
     """Runs a scene, as `dem-run` does, and returns its results.
 
-    `out` is the folder of the results, made with those that it is in; without it, `folder` in `[output]` of the scene, else the
-    scene's name with -out in the working directory. A folder that holds results is refused unless
-    `force` (they are replaced) or `resume` (the run goes on from its checkpoint).
+    `out` is the folder of the results, made with those that it is in; without it, `folder` in
+    `[output]` of the scene, else the scene's name with -out in the working directory. A folder that
+    holds results is refused unless `force` (they are replaced) or `resume` (the run goes on from
+    its checkpoint).
 
     `set` changes values of the scene, as `--set` does: `{"run.end_time": "0.2 s"}`. Tables may be
     keyword arguments: `run={"end_time": "0.2 s"}`, `bonds={"cake": {"young_modulus": "20 MPa"}}`

@@ -90,6 +90,11 @@ pub(crate) struct Parts {
 }
 
 impl Body {
+    /// Mean diameter of its particles by number, m. 0 without particles.
+    pub fn mean_diameter_m(&self) -> f64 {
+        2.0 * self.radii.iter().sum::<f64>() / self.radii.len().max(1) as f64
+    }
+
     /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and
     /// have the radius of the smaller of their spheres. Refuses what is not a body by
     /// [`Body::check`].

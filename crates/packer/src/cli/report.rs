@@ -82,28 +82,18 @@ pub(super) fn short_text(surface: &Surface, made: &BodyReport, output: &Path) ->
             show_length(thinnest.thickness_m)
         )
     });
-    let mass = made.mass.as_ref().map(|_| mass_lines(made)[0].clone());
     let mut text = first_line(surface, output);
-    for (name, what) in [
-        (
-            "particles",
-            Some(format!(
-                "{} spheres, mean diameter {}, {} bonds ({} per sphere)",
-                quality.particles,
-                show_length(quality.mean_diameter_m),
-                quality.bonds,
-                significant(quality.bonds_per_particle, 3)
-            )),
-        ),
-        (
-            "filled",
-            Some(format!("{filled:.0} % of the shape{across}")),
-        ),
-        ("mass", mass),
-    ] {
-        if let Some(what) = what {
-            text += &format!("{name:10} {what}\n");
-        }
+    text += &format!(
+        "particles  {} spheres, mean diameter {}, {} bonds ({} per sphere)\n",
+        quality.particles,
+        show_length(quality.mean_diameter_m),
+        quality.bonds,
+        significant(quality.bonds_per_particle, 3)
+    );
+    text += &format!("filled     {filled:.0} % of the shape{across}\n");
+    if made.mass.is_some() {
+        let [mass, _] = mass_lines(made);
+        text += &format!("mass       {mass}\n");
     }
     text + &verdict_lines(surface, made, 10)
 }

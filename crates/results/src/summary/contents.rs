@@ -18,7 +18,7 @@ use super::measured::Measured;
 use super::parts::{
     AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary, TakenIn,
 };
-use super::sizes::{RESOLVED_DIAMETERS, Sizes};
+use super::sizes::{RESOLVED_DIAMETERS, SizeSummary, Sizes};
 use crate::json::from_json;
 
 /// Program and version.
@@ -219,32 +219,34 @@ impl Trust {
     }
 }
 
+/// What a coarse result means, after the word.
+pub const COARSE: &str = "the result is that of these spheres, smaller ones would give another";
+
 /// Reliability of the result of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Stored")]
+#[serde(from = "Stored", into = "Stored")]
 pub struct Verdict {
     /// In one word.
     pub word: Trust,
-    /// Whether this word is "sound".
-    pub sound: bool,
     /// Reasons to doubt it, a sentence each.
     pub warnings: Vec<String>,
     /// Why it depends on the size of the spheres, a sentence each.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub coarse: Vec<String>,
     /// Names of figures of the fragments that the size of the spheres decides, not the material.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unresolved: Vec<String>,
 }
 
-/// A verdict as it is read, perhaps from a program that had no word for it.
-#[derive(Default, Deserialize)]
+/// A verdict as it is written, and read, perhaps from a program that had no word for it.
+#[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Stored {
     word: Option<Trust>,
+    /// Whether this word is "sound".
     sound: bool,
     warnings: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     coarse: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     unresolved: Vec<String>,
 }
 
@@ -256,10 +258,21 @@ impl From<Stored> for Verdict {
         };
         Self {
             word: stored.word.unwrap_or(word),
-            sound: stored.sound,
             warnings: stored.warnings,
             coarse: stored.coarse,
             unresolved: stored.unresolved,
+        }
+    }
+}
+
+impl From<Verdict> for Stored {
+    fn from(verdict: Verdict) -> Self {
+        Self {
+            word: Some(verdict.word),
+            sound: verdict.word == Trust::Sound,
+            warnings: verdict.warnings,
+            coarse: verdict.coarse,
+            unresolved: verdict.unresolved,
         }
     }
 }
@@ -274,18 +287,18 @@ impl Verdict {
         };
         Self {
             word,
-            sound: word == Trust::Sound,
             warnings,
             coarse,
             unresolved: Vec::new(),
         }
     }
 
-    /// Why it is not sound: the warnings of a doubtful one, those of a coarse one otherwise.
-    pub fn reasons(&self) -> &[String] {
+    /// What the reasons why it is not sound are called, and these: the warnings of a doubtful one,
+    /// those of a coarse one otherwise.
+    pub fn reasons(&self) -> (&'static str, &[String]) {
         match self.word {
-            Trust::Doubtful => &self.warnings,
-            Trust::Coarse | Trust::Sound => &self.coarse,
+            Trust::Doubtful => ("warning", &self.warnings),
+            Trust::Coarse | Trust::Sound => ("coarse", &self.coarse),
         }
     }
 }
@@ -319,8 +332,7 @@ impl Summary {
 
     /// A sentence on fragments of which half the mass is near the size of a sphere.
     fn small_fragments(&self) -> Option<String> {
-        let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
-        let all = self.sizes.as_ref().filter(|_| has_split)?.all.get("both")?;
+        let all = self.sizes_if_split()?;
         all.unresolved.d50.then(|| {
             format!(
                 "half the mass is in fragments of {} or less, below {RESOLVED_DIAMETERS} sphere diameters ({}): their sizes reflect the spheres rather than the material; use smaller spheres",
@@ -332,11 +344,15 @@ impl Summary {
 
     /// Names of figures of all fragments that are below the size that the spheres resolve.
     fn unresolved(&self) -> Vec<String> {
-        let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
-        let all = self.sizes.as_ref().filter(|_| has_split);
-        let all = all.and_then(|sizes| sizes.all.get("both"));
+        let all = self.sizes_if_split();
         let names = all.map_or(Vec::new(), |all| all.unresolved.names());
         names.into_iter().map(str::to_owned).collect()
+    }
+
+    /// Sizes of all fragments. None: no body has split.
+    fn sizes_if_split(&self) -> Option<&SizeSummary> {
+        let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
+        self.sizes.as_ref().filter(|_| has_split)?.all.get("both")
     }
 
     /// Reasons in the summary to doubt the result.

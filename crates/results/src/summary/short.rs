@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use dem_io::text::visible;
 use dem_io::units::significant;
 
-use super::contents::{Summary, Trust};
+use super::contents::{COARSE, Summary, Trust};
 use super::text::measure_lines;
 
 /// Number of measures, and of reasons for the verdict, that are shown; the others are counted.
@@ -78,12 +78,7 @@ impl Summary {
 
     /// The verdict with its reasons, and the page of the run.
     fn write_trust(&self, out: &mut String) -> fmt::Result {
-        let verdict = &self.verdict;
-        let name = match verdict.word {
-            Trust::Doubtful => "warning",
-            Trust::Coarse | Trust::Sound => "coarse",
-        };
-        let reasons = verdict.reasons();
+        let (name, reasons) = self.verdict.reasons();
         for reason in reasons.iter().take(SHOWN) {
             writeln!(out, "{name:12} {}", visible(reason))?;
         }
@@ -106,10 +101,7 @@ impl Summary {
     pub(super) fn verdict_text(&self) -> String {
         match self.verdict.word {
             Trust::Sound => "sound".to_owned(),
-            Trust::Coarse => {
-                "coarse: the result is that of these spheres, smaller ones would give another"
-                    .to_owned()
-            }
+            Trust::Coarse => format!("coarse: {COARSE}"),
             Trust::Doubtful => match self.verdict.warnings.len() {
                 1 => "doubtful: 1 warning".to_owned(),
                 many => format!("doubtful: {many} warnings"),

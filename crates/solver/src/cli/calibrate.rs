@@ -27,7 +27,7 @@ use dem_terminal::program::today;
 use dem_terminal::progress::{ProgressBar, progress_bar};
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 
-use super::packings::{Packings, mean_diameter_m, smallest_extent_m};
+use super::packings::{Packings, smallest_extent_m};
 use super::pool::in_pool;
 use super::progress::LogOfTests;
 use super::scene_arguments::SceneArguments;
@@ -443,7 +443,7 @@ impl Job<'_> {
         let mut case = record.cases[at].clone();
         case.particles = bodies[0].positions.len();
         case.bonds = bodies[0].bonds.len();
-        case.mean_diameter_m = mean_diameter_m(&bodies[0]);
+        case.mean_diameter_m = bodies[0].mean_diameter_m();
         case.spheres_across = smallest_extent_m(&bodies[0]) / case.mean_diameter_m;
         if case.start.is_none() && case.rounds.is_empty() {
             case.start = bench.start(count)?;

@@ -174,13 +174,10 @@ fn steps(scene: &Scene, plan: &Plan) -> Steps {
 /// What the run will be in about ten lines: contents, time step, run time, and reasons to doubt its
 /// result or to call it coarse.
 fn short(scene: &Scene, plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) -> String {
-    let contents = contents(plan);
-    let first_lines = contents.lines().filter(|line| !line.starts_with("mass"));
     let mut text = format!("{}\n", visible(&scene.source));
-    for line in first_lines
-        .filter(|line| !line.starts_with(' '))
-        .take(SHOWN)
-    {
+    let contents = contents(plan);
+    let named = contents.lines().filter(|line| !line.starts_with(' '));
+    for line in named.take(SHOWN) {
         text += &format!("{line}\n");
     }
     let mut line = |name: &str, what: &str| text += &format!("{name:14} {what}\n");
@@ -199,7 +196,11 @@ fn short(scene: &Scene, plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) 
 }
 
 fn text(plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) -> String {
-    let mut text = contents(plan) + &time_step(plan);
+    let mut text = contents(plan);
+    for (name, mass) in mass_lines(&plan.masses) {
+        text += &format!("{name:14} {mass}\n");
+    }
+    text += &time_step(plan);
     let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
     let state = &plan.state;
     let number = |steps: f64| {
@@ -258,7 +259,7 @@ fn run_time_text(trial: &Trial) -> String {
     }
 }
 
-/// Contents of the scene, bodies to be added, and masses.
+/// Contents of the scene, bodies to be added, and first contacts.
 fn contents(plan: &Plan) -> String {
     let state = &plan.state;
     let mut text = String::new();
@@ -299,9 +300,6 @@ fn contents(plan: &Plan) -> String {
     }
     for first in &plan.forecast.first_contacts {
         line("first contact", first.clone());
-    }
-    for (name, mass) in mass_lines(&plan.masses) {
-        line(name, mass);
     }
     text
 }

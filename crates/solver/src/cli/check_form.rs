@@ -3,6 +3,7 @@
 
 use dem_io::text::visible;
 use dem_plan::Plan;
+use dem_results::summary::Verdict;
 
 /// Where the rest is.
 pub(super) const VERBOSE: &str = "--verbose prints all values, estimates, stages and notes";
@@ -30,15 +31,12 @@ impl Form {
 /// The verdict as far as it is known before the run, with its reasons.
 pub(super) fn expected_verdict(plan: &Plan) -> String {
     let warnings = plan.warnings.iter().chain(&plan.forecast.warnings);
-    let warnings: Vec<&String> = warnings.collect();
-    let (name, reasons, word) = match (warnings.is_empty(), plan.coarse.is_empty()) {
-        (false, _) => ("warning", warnings, "doubtful"),
-        (true, false) => ("coarse", plan.coarse.iter().collect(), "coarse"),
-        (true, true) => ("", Vec::new(), "sound"),
-    };
+    let verdict = Verdict::new(warnings.cloned().collect(), plan.coarse.clone());
+    let (name, reasons) = verdict.reasons();
     let mut text = String::new();
-    for reason in &reasons {
+    for reason in reasons {
         text += &format!("{name:14} {}\n", visible(reason));
     }
+    let word = verdict.word.word();
     text + &format!("{:14} {word} as far as known before the run\n", "verdict")
 }

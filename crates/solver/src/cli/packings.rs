@@ -195,11 +195,6 @@ fn same_files(files: &[PathBuf]) -> Option<(&PathBuf, &PathBuf)> {
     (0..files.len()).find_map(|at| twice(&at))
 }
 
-/// Mean diameter of the spheres of a body, m.
-pub(super) fn mean_diameter_m(body: &Body) -> f64 {
-    2.0 * body.radii.iter().sum::<f64>() / body.radii.len().max(1) as f64
-}
-
 /// Smallest extent of a body, m.
 pub(super) fn smallest_extent_m(body: &Body) -> f64 {
     let extent = |k: usize| {

@@ -26,6 +26,12 @@ pub(super) struct ShownProgress {
     log: Option<RefCell<Log>>,
 }
 
+/// Whether progress is shown as lines in a log: where standard error is no terminal, unless
+/// `quiet`.
+pub(super) fn is_logged(quiet: bool) -> bool {
+    !quiet && !std::io::stderr().is_terminal()
+}
+
 /// The lines in a log.
 pub(super) struct Log {
     begun: Instant,
@@ -67,8 +73,7 @@ impl Tenths {
 impl ShownProgress {
     /// Shows nothing if `quiet`.
     pub(super) fn new(quiet: bool) -> Self {
-        let is_terminal = std::io::stderr().is_terminal();
-        let log = (!quiet && !is_terminal).then(|| RefCell::new(Log::new("run ")));
+        let log = is_logged(quiet).then(|| RefCell::new(Log::new("run ")));
         let template = "run {prefix}[{bar:30}] {percent:>3} %  {msg}";
         Self {
             bar: progress_bar(quiet, 1000, template),
@@ -148,7 +153,7 @@ impl LogOfTests {
             begun: Instant::now(),
             last: Instant::now(),
             prefix: format!("calibrate {size}").trim_end().to_owned(),
-            is_shown: !quiet && !std::io::stderr().is_terminal(),
+            is_shown: is_logged(quiet),
         }
     }
 

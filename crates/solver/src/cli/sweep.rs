@@ -5,7 +5,6 @@ mod results;
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -21,7 +20,7 @@ use dem_terminal::progress::progress_bar;
 
 use self::results::{list, say, write_files};
 use super::pool::refuse_threads;
-use super::progress::{Log, Tell};
+use super::progress::{Log, Tell, is_logged};
 use crate::interrupt::Interrupt;
 use dem_laboratory::test_result::T10;
 use dem_study::collect::outcome;
@@ -403,7 +402,7 @@ fn do_what_is_left(
         .collect();
     let template = "sweep [{bar:40}] {pos}/{len} runs  {eta} left";
     let bar = progress_bar(options.quiet, todo.len(), template);
-    let is_logged = !options.quiet && !std::io::stderr().is_terminal();
+    let is_logged = is_logged(options.quiet);
     let log = RefCell::new(Log::new("sweep "));
     let show = |done: usize| {
         bar.set_position(done as u64);

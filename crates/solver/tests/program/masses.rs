@@ -198,8 +198,8 @@ fn what_dem_pack_warned_of_is_not_forgotten() {
     assert_eq!(ran["verdict"]["warnings"], serde_json::json!(wanted));
 }
 
-/// A row of spheres 4.9 across, with and without bonds that were calibrated with such spheres, and as
-/// a rigid clump.
+/// A row of spheres 4.9 across, with and without bonds that were calibrated with such spheres, and
+/// as a rigid clump.
 #[test]
 fn a_body_of_few_spheres_is_coarse_unless_it_is_rigid_or_calibrated() {
     let bench = bench(&[], Some(MASS_KG / 2050.0));

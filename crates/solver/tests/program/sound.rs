@@ -234,8 +234,8 @@ walls.belt = { box = { min = [0.9, -0.1, -0.1], max = [1.1, 0.1, 0] }, material 
     assert!(error > whole && error < 0.01, "{part}");
 }
 
-/// A ball rides on a belt asleep when another one falls onto the belt: the energy that it took along
-/// into its sleep is not missing in that of both.
+/// A ball rides on a belt asleep when another one falls onto the belt: the energy that it took
+/// along into its sleep is not missing in that of both.
 #[test]
 fn a_body_that_lands_beside_one_that_rides_asleep_is_sound() {
     let bench = Bench::new();

@@ -7,6 +7,7 @@ use dem_io::stl::read_stl_file;
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_io::units::{Dimension, LENGTH, MASS, quantity, significant};
 use dem_io::{Diagnostic, Result, Surface, explain_read};
+use dem_plan::masses::{HEAVIEST_KG_M3, LIGHTEST_KG_M3};
 
 use super::arguments::NewArguments;
 use super::fill::Value;
@@ -16,8 +17,6 @@ use super::templates::{Measured, Template};
 
 /// The limits within which a body is likely what was meant, m.
 const SIZES_M: [f64; 2] = [1e-5, 100.0];
-/// The densities of solids, from foams to the heaviest metal, kg/m3.
-const DENSITIES_KG_M3: [f64; 2] = [20.0, 23_000.0];
 
 /// What the answers give.
 pub(super) struct Answers {
@@ -173,7 +172,7 @@ fn read_size(text: &str) -> Result<f64> {
 
 fn read_mass(text: &str, volume_m3: f64) -> Result<f64> {
     let mass_kg = positive(text, &MASS)?;
-    let [lightest, heaviest] = DENSITIES_KG_M3;
+    let [lightest, heaviest] = [LIGHTEST_KG_M3, HEAVIEST_KG_M3];
     let density = mass_kg / volume_m3;
     if (lightest..=heaviest).contains(&density) {
         return Ok(mass_kg);
