@@ -33,12 +33,25 @@ pub struct Round {
 }
 
 impl Round {
+    /// With these factors, before its tests.
+    pub(crate) fn new(factors: Vec<f64>, packings: usize) -> Self {
+        Self {
+            factors,
+            trials: vec![None; packings],
+        }
+    }
+
     /// Mean and scatter of a result. None: no packing has it.
     pub fn statistic(&self, unknown: usize) -> Option<Statistic> {
         let trials = self.trials.iter().flatten();
         let values: Vec<f64> = trials.filter_map(|trial| trial.results[unknown]).collect();
         // A mean over some of the packings only is not that of all.
         (values.len() == self.trials.len()).then(|| Statistic::of(&values))
+    }
+
+    /// Whether every packing has its test.
+    pub fn is_whole(&self) -> bool {
+        self.trials.iter().all(Option::is_some)
     }
 
     /// Mean of a result.
@@ -54,11 +67,16 @@ impl Round {
         unknowns.iter().enumerate().map(of).collect()
     }
 
-    /// The largest value that a result of a packing is at least, if there are any.
-    pub(crate) fn largest_bound(&self, unknown: usize) -> Option<f64> {
-        let trials = self.trials.iter().flatten();
-        let bounds = trials.filter_map(|trial| trial.results[unknown].or(trial.at_least[unknown]));
-        bounds.reduce(f64::max)
+    /// A value that the mean of a result is at least, if there are any, and the number of packings
+    /// that do not have the result.
+    pub(crate) fn least_mean(&self, unknown: usize) -> Option<(f64, usize)> {
+        let trials = || self.trials.iter().flatten();
+        let bounds =
+            trials().filter_map(|trial| trial.results[unknown].or(trial.at_least[unknown]));
+        let bounds: Vec<f64> = bounds.collect();
+        let missing = trials().filter(|trial| trial.results[unknown].is_none());
+        let sum: f64 = bounds.iter().sum();
+        (!bounds.is_empty()).then(|| (sum / bounds.len() as f64, missing.count()))
     }
 }
 
@@ -67,6 +85,11 @@ impl Round {
 pub struct Start {
     /// Factor on the numbers of each unknown.
     pub factors: Vec<f64>,
+    /// ln(result) over ln(factor) of each unknown there.
+    pub slopes: Vec<f64>,
+    /// Mean travel at which a body with the wanted strength fails, m. None: there is no strength to
+    /// meet.
+    pub travel_m: Option<f64>,
     /// Number of tests without steps.
     pub tests: usize,
     /// Run time, s.
@@ -103,10 +126,10 @@ pub struct Case {
     pub rounds: Vec<Round>,
     /// The round that is the result, and how it ended. None: it has not ended.
     pub end: Option<(usize, End)>,
-    /// The test of the first packing with the numbers of the result at twice the rate. None: not
-    /// done.
-    pub at_twice_the_rate: Option<Trial>,
-    /// Why there is no such test although the scene asks for it.
+    /// The tests of all packings with the numbers of the result at twice the rate. None: not asked
+    /// for, or not begun.
+    pub at_twice_the_rate: Option<Round>,
+    /// Why there are no such tests although the scene asks for them.
     pub rate_problem: Option<String>,
 }
 
@@ -132,9 +155,22 @@ impl Case {
         }
     }
 
-    /// True if the test at twice the rate has been done, or has failed.
+    /// True if the tests at twice the rate have been done, or have failed.
     pub fn has_rate_check(&self) -> bool {
-        self.at_twice_the_rate.is_some() || self.rate_problem.is_some()
+        let done = self.at_twice_the_rate.as_ref();
+        done.is_some_and(Round::is_whole) || self.rate_problem.is_some()
+    }
+
+    /// By what half the rate changes the result of an unknown, relative to it, over the packings.
+    pub fn rate_change(&self, unknown: usize) -> Option<Statistic> {
+        let (slow, fast) = (self.result()?, self.at_twice_the_rate.as_ref()?);
+        let pairs = slow.trials.iter().zip(&fast.trials);
+        let change = |(slow, fast): (&Option<Trial>, &Option<Trial>)| {
+            let [slow, fast] = [slow, fast].map(|trial| trial.as_ref()?.results[unknown]);
+            Some(slow? / fast? - 1.0)
+        };
+        let changes: Vec<f64> = pairs.filter_map(change).collect();
+        (!changes.is_empty()).then(|| Statistic::of(&changes))
     }
 
     /// Run time of all tests, s, and their number.

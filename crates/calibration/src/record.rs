@@ -10,7 +10,7 @@ use crate::case::{Case, Round};
 use crate::unknown::Unknown;
 
 /// Version of the format of [`Record`].
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 /// The record of a calibration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,6 +30,8 @@ pub struct Record {
     pub unknowns: Vec<Unknown>,
     /// Names of the packings.
     pub packings: Vec<String>,
+    /// How they were made: the arguments of `dem-pack`. Empty: they were given.
+    pub packed_with: String,
     /// The wanted curve: displacement, m, and load, N. Empty: there is none.
     pub wanted_curve: Vec<[f64; 2]>,
     /// The calibrations, one for each size of spheres, from coarse to fine.
@@ -42,9 +44,8 @@ impl Record {
         let mut record = self.clone();
         record.wanted_curve.clear();
         for case in &mut record.cases {
-            let rounds = case.rounds.iter_mut();
-            let trials = rounds.flat_map(|round| round.trials.iter_mut().flatten());
-            for trial in trials.chain(&mut case.at_twice_the_rate) {
+            let rounds = case.rounds.iter_mut().chain(&mut case.at_twice_the_rate);
+            for trial in rounds.flat_map(|round| round.trials.iter_mut().flatten()) {
                 trial.curve.clear();
             }
         }
@@ -96,12 +97,13 @@ fn has_all_entries(record: &Record) -> bool {
         let starts = case
             .start
             .as_ref()
-            .is_none_or(|start| start.factors.len() == count);
+            .is_none_or(|start| start.factors.len() == count && start.slopes.len() == count);
         let ends = case
             .end
             .as_ref()
             .is_none_or(|(at, _)| *at < case.rounds.len().max(1));
-        starts && ends && case.rounds.iter().all(is_whole)
+        let mut rounds = case.rounds.iter().chain(&case.at_twice_the_rate);
+        starts && ends && rounds.all(is_whole)
     };
     record.unknowns.iter().all(is_number) && record.cases.iter().all(of_case)
 }

@@ -5,13 +5,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use dem_io::Result;
 
-use crate::case::{Case, Round, Trial};
+use crate::case::{Case, End, Round, Trial};
 use crate::search::{Step, next};
 use crate::unknown::Unknown;
+
+/// Bodies with fewer spheres across sink in at pins and plates more than they bend.
+const FEWEST_ACROSS: f64 = 5.0;
 
 /// Does the test of a packing, given by its number from 0, with a factor on the numbers of each
 /// unknown.
 pub type TestFunction<'a> = dyn Fn(&[f64], usize) -> Result<Trial> + Sync + 'a;
+
+/// Saves what has been done so far.
+pub type SaveFunction<'a> = dyn Fn(&Case) -> Result<()> + Sync + 'a;
 
 /// Does rounds of tests, from the first factors of `case`, until the targets are met or cannot be
 /// met. Rounds that `case` already has are not repeated. `workers` tests run at a time; `save` is
@@ -22,37 +28,78 @@ pub fn calibrate(
     case: &mut Case,
     workers: usize,
     test: &TestFunction<'_>,
-    save: &(dyn Fn(&Case) -> Result<()> + Sync),
+    save: &SaveFunction<'_>,
 ) -> Result<()> {
-    let start = case.start.as_ref().map(|start| start.factors.clone());
-    let mut factors = start.unwrap_or_else(|| vec![1.0; unknowns.len()]);
+    let start = case.start.clone();
+    let first = start.as_ref().map(|start| start.factors.clone());
+    let mut factors = first.unwrap_or_else(|| vec![1.0; unknowns.len()]);
     let mut at = 0;
     while case.end.is_none() {
         if at == case.rounds.len() {
-            case.rounds.push(Round {
-                factors: factors.clone(),
-                trials: vec![None; packings],
-            });
+            case.rounds.push(Round::new(factors.clone(), packings));
         }
-        do_round(case, at, workers, test, save)?;
-        match next(unknowns, &case.rounds[..=at]) {
+        do_round(case, Which::Number(at), workers, test, save)?;
+        match next(unknowns, start.as_ref(), &case.rounds[..=at]) {
             Step::Try(new) => factors = new,
-            Step::Stop(best, end) => case.end = Some((best, end)),
+            Step::Stop(best, end) => case.end = Some((best, coarse(end, case.spheres_across))),
         }
         at += 1;
     }
     save(case)
 }
 
+/// Names a body that is too coarse as a reason for a failure.
+fn coarse(end: End, across: f64) -> End {
+    match end {
+        End::NotMet(problem, remedy) if across < FEWEST_ACROSS => End::NotMet(
+            problem,
+            format!("{remedy}; the body is only {across:.1} spheres across: take smaller ones"),
+        ),
+        end => end,
+    }
+}
+
+/// Does the tests of all packings with the numbers of the result, by `test` at twice the rate.
+pub fn check_rate(
+    case: &mut Case,
+    workers: usize,
+    test: &TestFunction<'_>,
+    save: &SaveFunction<'_>,
+) -> Result<()> {
+    if case.at_twice_the_rate.is_none() {
+        let of = |round: &Round| Round::new(round.factors.clone(), round.trials.len());
+        case.at_twice_the_rate = case.result().map(of);
+    }
+    do_round(case, Which::TwiceTheRate, workers, test, save)
+}
+
+/// A round of a case.
+#[derive(Debug, Clone, Copy)]
+enum Which {
+    Number(usize),
+    TwiceTheRate,
+}
+
+impl Which {
+    fn of(self, case: &mut Case) -> Option<&mut Round> {
+        match self {
+            Self::Number(at) => case.rounds.get_mut(at),
+            Self::TwiceTheRate => case.at_twice_the_rate.as_mut(),
+        }
+    }
+}
+
 /// Does the tests of a round that are not done, some at a time.
 fn do_round(
     case: &mut Case,
-    at: usize,
+    which: Which,
     workers: usize,
     test: &TestFunction<'_>,
-    save: &(dyn Fn(&Case) -> Result<()> + Sync),
+    save: &SaveFunction<'_>,
 ) -> Result<()> {
-    let round = &case.rounds[at];
+    let Some(round) = which.of(case) else {
+        return Ok(());
+    };
     let factors = round.factors.clone();
     let trials = round.trials.iter().enumerate();
     let left: Vec<usize> = trials
@@ -67,7 +114,9 @@ fn do_round(
             let Ok(mut guard) = shared.lock() else { return };
             let (case, problem) = &mut *guard;
             let saved = done.and_then(|trial| {
-                case.rounds[at].trials[packing] = Some(trial);
+                if let Some(round) = which.of(case) {
+                    round.trials[packing] = Some(trial);
+                }
                 save(case)
             });
             if saved.is_err() {

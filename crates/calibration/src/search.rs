@@ -1,7 +1,8 @@
-//! The next factors, from the results so far: the secant method on logarithms.
+//! The next factors, from the results so far: secants of the logarithms.
 
-use crate::case::{End, Round};
+use crate::case::{End, Round, Start};
 use crate::confidence::half_width;
+use crate::response::Response;
 use crate::unknown::Unknown;
 
 /// Rounds of tests after which a calibration ends if all results are proportional to their numbers.
@@ -15,15 +16,11 @@ const MUCH_WEAKER: f64 = 0.25;
 /// Largest relative deviation of a mean that is accepted because its target is within the
 /// confidence interval.
 const FURTHEST_WITHIN_SCATTER: f64 = 0.05;
-/// Smallest change of the logarithm of a factor from which a slope is taken: below, the scatter of
-/// strengths is larger than their change.
+/// Smallest change of the logarithm of a factor from which the slope of a single result is taken.
 const FEWEST_CHANGE: f64 = 0.1;
-/// Range of slopes of ln(result) over ln(factor) for proportional results, which contacts at pins
-/// and the scatter of strengths change.
-const SLOPES: [f64; 2] = [0.5, 2.0];
-/// Range of the size of slopes for others.
+/// Range of the size of slopes of results that are not proportional.
 const SIZES_OF_SLOPES: [f64; 2] = [0.1, 5.0];
-/// Largest change of the logarithm of their factors: in the first step, whose slope is not known,
+/// Largest change of the logarithm of the factors of such results: in the first step, whose slope is not known,
 /// and in others.
 const CHANGES: [f64; 2] = [0.4, 1.0];
 /// A result that follows its number less than this does not depend on it.
@@ -40,8 +37,8 @@ pub enum Step {
     Stop(usize, End),
 }
 
-/// The step after these rounds; at least one.
-pub fn next(unknowns: &[Unknown], rounds: &[Round]) -> Step {
+/// The step after these rounds, at least one, that began with `start`.
+pub fn next(unknowns: &[Unknown], start: Option<&Start>, rounds: &[Round]) -> Step {
     let last = rounds.len() - 1;
     let deviations = rounds[last].deviations(unknowns);
     let is_met = |(unknown, deviation): (&Unknown, &Option<f64>)| {
@@ -52,8 +49,9 @@ pub fn next(unknowns: &[Unknown], rounds: &[Round]) -> Step {
     }
     let mut factors = rounds[last].factors.clone();
     let mut missing = None;
+    let proportional = Response::of(unknowns, start, rounds).factors(unknowns, rounds);
     for (at, unknown) in unknowns.iter().enumerate() {
-        match factor(unknown, rounds, at) {
+        match factor(unknown, rounds, at, proportional[at]) {
             Ok(factor) => factors[at] = factor,
             Err(Obstacle::Missing(problem, remedy)) => {
                 missing.get_or_insert((problem, remedy));
@@ -93,29 +91,19 @@ enum Obstacle {
     Missing(String, String),
 }
 
-/// The next factor of the unknown `at`, or why there is none.
-fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, Obstacle> {
+/// The next factor of the unknown `at`, or why there is none. `proportional`: what it is for a
+/// proportional one.
+fn factor(
+    unknown: &Unknown,
+    rounds: &[Round],
+    at: usize,
+    proportional: Option<f64>,
+) -> Result<f64, Obstacle> {
     let last = &rounds[rounds.len() - 1];
     let old = last.factors[at];
     let name = &unknown.result;
     let Some(mean) = last.mean(at) else {
-        let Some(least) = last.largest_bound(at) else {
-            let problem = format!("no test gave the {name}");
-            let remedy = "see what dem-run says of the test itself".to_owned();
-            return Err(Obstacle::Missing(problem, remedy));
-        };
-        if least < unknown.target {
-            let problem = format!(
-                "the bodies do not break: at the end of the stroke the {name} is {:.3} of its target",
-                least / unknown.target
-            );
-            return Err(Obstacle::Missing(
-                problem,
-                "lengthen test.stroke".to_owned(),
-            ));
-        }
-        // How strong the bodies are is not known: the stroke ended first.
-        return Ok(old * (unknown.target / least).min(MUCH_WEAKER));
+        return weaker(unknown, last, at);
     };
     let wanted = (unknown.target / mean).ln();
     // As near as this, scatter is larger than what a change would improve.
@@ -125,18 +113,19 @@ fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, Obstacl
     let slope = slope(rounds, at);
     if slope.is_some_and(|slope| slope.abs() < FLAT || (unknown.is_proportional && slope < 0.0)) {
         let problem = format!("the {name} hardly follows {}", unknown.numbers[0].path);
-        let remedy = "something else determines it, such as soft contacts at pins or plates; make these stiffer, or correct the target";
+        let remedy = "something else determines it, such as contacts at pins or plates: calibrate the modulus of the specimen itself (--modulus specimen), take smaller spheres, or correct the target";
         return Err(Obstacle::Final(problem, remedy.to_owned()));
     }
-    let change = match (slope, unknown.is_proportional) {
-        (slope, true) => wanted / slope.unwrap_or(1.0).clamp(SLOPES[0], SLOPES[1]),
-        (None, false) => wanted.clamp(-CHANGES[0], CHANGES[0]),
-        (Some(slope), false) => {
-            let size = slope.abs().clamp(SIZES_OF_SLOPES[0], SIZES_OF_SLOPES[1]);
-            (wanted / size * slope.signum()).clamp(-CHANGES[1], CHANGES[1])
-        }
-    };
-    let new = old * change.exp();
+    let new = proportional.unwrap_or_else(|| {
+        let change = match slope {
+            None => wanted.clamp(-CHANGES[0], CHANGES[0]),
+            Some(slope) => {
+                let size = slope.abs().clamp(SIZES_OF_SLOPES[0], SIZES_OF_SLOPES[1]);
+                (wanted / size * slope.signum()).clamp(-CHANGES[1], CHANGES[1])
+            }
+        };
+        old * change.exp()
+    });
     if !(1.0 / FURTHEST..=FURTHEST).contains(&new) {
         let problem = format!(
             "the target of the {name} is out of reach: {} would be {new:.3e} times that of the scene",
@@ -146,6 +135,38 @@ fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, Obstacl
         return Err(Obstacle::Final(problem, remedy));
     }
     Ok(new)
+}
+
+/// The factor after a round in which not all bodies break.
+fn weaker(unknown: &Unknown, last: &Round, at: usize) -> Result<f64, Obstacle> {
+    let name = &unknown.result;
+    let Some((least, whole)) = last.least_mean(at) else {
+        let problem = format!("no test gave the {name}");
+        let remedy = "see what dem-run says of the test itself".to_owned();
+        return Err(Obstacle::Missing(problem, remedy));
+    };
+    if least < unknown.target {
+        let all = last.trials.len();
+        let which = match whole == all {
+            true => "the bodies do not break".to_owned(),
+            false => format!("{whole} of {all} bodies do not break"),
+        };
+        let problem = format!(
+            "{which}: at the end of the stroke the {name} is {:.3} of its target",
+            least / unknown.target
+        );
+        return Err(Obstacle::Missing(
+            problem,
+            "lengthen test.stroke".to_owned(),
+        ));
+    }
+    let factor = unknown.target / least;
+    // If none breaks, how strong they are is not known: the stroke ended first.
+    let factor = match whole == last.trials.len() {
+        true => factor.min(MUCH_WEAKER),
+        false => factor,
+    };
+    Ok(last.factors[at] * factor)
 }
 
 /// Slope of ln(mean result) over ln(factor), from the last two rounds that differ enough.

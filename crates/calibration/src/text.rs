@@ -2,13 +2,14 @@
 
 use std::fmt::Write;
 
-use dem_io::units::{show_quantity, significant};
+use dem_io::units::{show_length, show_quantity, significant};
+use dem_laboratory::Statistic;
 
 use crate::case::{Case, End};
 use crate::confidence::half_width;
 use crate::record::Record;
 use crate::resolution::{coarsest, curve_error};
-use crate::unknown::Number;
+use crate::unknown::{Number, Unknown};
 
 /// Change of a result at half the rate above which it is in doubt.
 const RATE_MATTERS: f64 = 0.02;
@@ -30,6 +31,10 @@ pub fn report(record: &Record, most_error: Option<f64>) -> String {
                 ),
             };
             line(&mut text, &name, &value);
+        }
+        let more = [other_packings(record, case), rate(record, case)];
+        for (name, value) in more.into_iter().flatten() {
+            line(&mut text, name, &value);
         }
         for [path, new, old] in numbers(record, case) {
             line(&mut text, &path, &format!("{new} (scene: {old})"));
@@ -150,23 +155,70 @@ pub(crate) fn warnings(record: &Record, case: &Case) -> Vec<String> {
     if let Some(problem) = &case.rate_problem {
         warnings.push(format!("the test at twice the rate failed: {problem}"));
     }
-    if let (Some(fast), Some(Some(slow))) = (&case.at_twice_the_rate, round.trials.first()) {
-        let pairs = slow.results.iter().zip(&fast.results);
-        for (unknown, (slow, fast)) in record.unknowns.iter().zip(pairs) {
-            let (Some(slow), Some(fast)) = (slow, fast) else {
-                continue;
-            };
-            let change = slow / fast - 1.0;
-            if change.abs() > RATE_MATTERS {
-                warnings.push(format!(
-                    "half the rate changes the {} by {:.1} %: raise test.periods",
-                    unknown.result,
-                    100.0 * change
-                ));
-            }
+    for (at, unknown) in record.unknowns.iter().enumerate() {
+        let Some(change) = case.rate_change(at) else {
+            continue;
+        };
+        // Below its own scatter a change says nothing.
+        let least = half_width(&change).unwrap_or(0.0).max(RATE_MATTERS);
+        if change.mean.abs() > least {
+            warnings.push(format!(
+                "half the rate changes the {} by {}: raise test.periods",
+                unknown.result,
+                change_text(&change)
+            ));
         }
     }
     warnings
+}
+
+/// A relative change with half its 95 % confidence interval.
+fn change_text(change: &Statistic) -> String {
+    let mean = format!("{:+.1} %", 100.0 * change.mean);
+    match half_width(change) {
+        Some(half) => format!("{mean} (± {:.1} %)", 100.0 * half),
+        None => mean,
+    }
+}
+
+/// What other packings of the same spheres give with these numbers: the prediction intervals of the
+/// result of one and of the mean of as many, which scatter as these do (Student's t).
+fn other_packings(record: &Record, case: &Case) -> Option<(&'static str, String)> {
+    let round = case.result()?;
+    let of = |(at, unknown): (usize, &Unknown)| {
+        let statistic = round.statistic(at)?;
+        let count = statistic.count as f64;
+        // half_width has a factor of 1/sqrt(count).
+        let half = half_width(&statistic)? / statistic.mean;
+        let [one, mean] = [(count + 1.0).sqrt(), 2.0_f64.sqrt()].map(|wide| 100.0 * wide * half);
+        Some(format!(
+            "{} ± {mean:.0} % (one ± {one:.0} %)",
+            unknown.result
+        ))
+    };
+    let all: Vec<String> = (record.unknowns.iter().enumerate())
+        .filter_map(of)
+        .collect();
+    let count = round.trials.len();
+    (!all.is_empty()).then(|| {
+        let means = all.join(", ");
+        (
+            "others",
+            format!("mean of {count} other packings, 95 %: {means}"),
+        )
+    })
+}
+
+/// What half the rate changes.
+fn rate(record: &Record, case: &Case) -> Option<(&'static str, String)> {
+    let of = |(at, unknown): (usize, &Unknown)| {
+        let change = case.rate_change(at)?;
+        Some(format!("{} {}", unknown.result, change_text(&change)))
+    };
+    let all: Vec<String> = (record.unknowns.iter().enumerate())
+        .filter_map(of)
+        .collect();
+    (!all.is_empty()).then(|| ("half rate", all.join(", ")))
 }
 
 /// The coarsest size whose curve has at most the wanted error.
@@ -188,16 +240,29 @@ pub(crate) fn coarsest_size(record: &Record, most_error: Option<f64>) -> Option<
 
 /// The origin of the numbers of a case, as comments of a material file.
 pub fn origin(record: &Record, case: &Case) -> String {
-    let mut lines = vec![
-        format!(
-            "Calibrated on {} by {} with {}.",
-            record.date, record.program, record.scene
-        ),
-        format!("Packings: {}.", record.packings.join(", ")),
-    ];
-    if !case.name.is_empty() {
-        lines.push(format!("Spheres: {}.", case.name));
+    let mut lines = vec![format!(
+        "Calibrated on {} by {} with {}.",
+        record.date, record.program, record.scene
+    )];
+    if let Some((problem, _)) = case.problem() {
+        lines.insert(0, format!("NOT CALIBRATED: {problem}."));
     }
+    lines.push(match record.packed_with.as_str() {
+        "" => format!("Packings: {}.", record.packings.join(", ")),
+        pack => format!(
+            "Packings: {}, of dem-pack {pack}.",
+            record.packings.join(", ")
+        ),
+    });
+    let size = match case.name.as_str() {
+        "" => String::new(),
+        name => format!("{name}, "),
+    };
+    lines.push(format!(
+        "Spheres: {size}{} in the mean, {} across the body.",
+        show_length(case.mean_diameter_m),
+        significant(case.spheres_across, 3)
+    ));
     for [name, mean, interval, target, _, scatter] in results(record, case) {
         lines.push(match scatter.as_str() {
             "" => format!("{name}: {mean}, target {target}"),
@@ -206,6 +271,12 @@ pub fn origin(record: &Record, case: &Case) -> String {
             ),
         });
     }
+    let more = [other_packings(record, case), rate(record, case)];
+    lines.extend(
+        more.into_iter()
+            .flatten()
+            .map(|(name, text)| format!("{name}: {text}")),
+    );
     for [path, new, old] in numbers(record, case) {
         lines.push(format!("{path}: {new}, in the scene {old}"));
     }

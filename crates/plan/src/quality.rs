@@ -20,6 +20,9 @@ const FEWEST: usize = 20;
 const CHAIN: f64 = 1.05;
 /// Bonds are calibrated for spheres whose mean diameter differs by at most this fraction.
 const SAME_DIAMETER: f64 = 0.1;
+/// And in a body whose inverse number of spheres across differs by at most this: with 10 across and
+/// 15, or 6.7 and 4.2, modulus and strength differ by some 15 %.
+const SAME_ACROSS: f64 = 0.02;
 
 /// What is said about the quality of the bodies of a scene, a sentence each.
 #[derive(Debug, Default)]
@@ -51,9 +54,14 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
             let seen = faults(body).into_iter();
             (quality.warnings).extend(seen.map(|text| format!("{named}: {text}")));
         }
-        if let Some(coarse) = coarse.filter(|_| !is_calibrated(scene, name, body)) {
-            quality.coarse.push(format!("{named}: {coarse}"));
-        }
+        let coarse = match calibrated(scene, name, body) {
+            Calibrated::No => coarse,
+            Calibrated::Here => None,
+            Calibrated::Elsewhere(across) => Some(across),
+        };
+        quality
+            .coarse
+            .extend(coarse.map(|text| format!("{named}: {text}")));
     }
     quality
 }
@@ -67,16 +75,39 @@ fn named(scene: &Scene, name: &str) -> String {
     }
 }
 
-/// Whether the bonds of a body were calibrated with spheres of this size.
-fn is_calibrated(scene: &Scene, name: &str, body: &Body) -> bool {
+/// With what the bonds of a body were calibrated.
+enum Calibrated {
+    /// Not, or with spheres of another size.
+    No,
+    /// With its spheres, in a body of about as many across.
+    Here,
+    /// With its spheres, in a body of more or fewer across: what that means.
+    Elsewhere(String),
+}
+
+fn calibrated(scene: &Scene, name: &str, body: &Body) -> Calibrated {
     let kind = scene
         .bodies
         .get(name)
         .and_then(|entry| entry.bond_kind.as_ref());
     let kind = kind.and_then(|kind| scene.bonds.get(kind));
     let mean_m = body.mean_diameter_m();
-    kind.and_then(|kind| kind.calibrated_diameter_m)
-        .is_some_and(|calibrated_m| (mean_m / calibrated_m - 1.0).abs() <= SAME_DIAMETER)
+    let is_same = kind
+        .and_then(|kind| kind.calibrated_diameter_m)
+        .is_some_and(|calibrated_m| (mean_m / calibrated_m - 1.0).abs() <= SAME_DIAMETER);
+    if !is_same {
+        return Calibrated::No;
+    }
+    let across = body.about.particles_across;
+    let both = across.zip(kind.and_then(|kind| kind.calibrated_across));
+    match both.filter(|(here, there)| (1.0 / here - 1.0 / there).abs() > SAME_ACROSS) {
+        None => Calibrated::Here,
+        Some((here, there)) => Calibrated::Elsewhere(format!(
+            "{} particles across; its bonds were calibrated in a body of {}: modulus and strength can be 10 % to 20 % off, as bonds near faces bear less; calibrate in this body, or scale the spheres with it",
+            significant(here, 3),
+            significant(there, 3)
+        )),
+    }
 }
 
 /// Warnings about a body that no program has looked at.

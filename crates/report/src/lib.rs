@@ -85,9 +85,14 @@ fn shorten(value: &mut Value, paths: &[String]) {
     }
 }
 
-/// The name of the scene without folder and ending.
+/// The name of the scene without folder and ending; of a `scene.toml` that of its folder.
 fn title(summary: &Summary) -> String {
-    let stem = Path::new(&summary.scene).file_stem().unwrap_or_default();
+    let path = Path::new(&summary.scene);
+    let folder = path.parent().and_then(Path::file_name);
+    let stem = match path.file_stem() {
+        Some(stem) if stem == "scene" => folder.unwrap_or(stem),
+        stem => stem.unwrap_or_default(),
+    };
     let stem = stem.to_string_lossy();
     match &summary.test {
         Some(test) => format!("{stem}: {}", test.kind.name().replace('-', " ")),

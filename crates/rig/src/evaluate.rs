@@ -4,7 +4,7 @@
 use dem_scene::{BondKind, Test};
 
 use super::confined::{self, POISSON_RATIO, RESIDUAL, RESIDUAL_FRICTION};
-use super::curve::{largest_n, peak, play_m, rows_of, slope};
+use super::curve::{elastic_load_n, largest_n, peak, play_m, rows_of, slope};
 use super::disc_stress::{self, ACROSS, ALONG};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
@@ -32,6 +32,8 @@ pub struct TestInput<'a> {
     pub bonds: Option<&'a BondKind>,
     /// Hz.
     pub lowest_frequency_hz: f64,
+    /// See [`TestSettings::wanted_n`](crate::watch::TestSettings::wanted_n).
+    pub wanted_n: Option<f64>,
     /// The load fell below half of its maximum.
     pub broken: bool,
     /// Number of all bonds.
@@ -49,10 +51,12 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         ..
     } = *evidence;
     let rows = &rows_of(record, evidence.lowest_frequency_hz);
-    let by_travel = slope(rows, |row| row.travel_m);
-    let measured = !setup.moving.is_empty();
-    let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
     let largest = largest_n(rows);
+    let elastic_n = largest.map(|largest| elastic_load_n(largest, evidence.wanted_n));
+    let slope = |way: fn(&Row) -> f64| slope(rows, elastic_n?, way);
+    let by_travel = slope(|row| row.travel_m);
+    let measured = !setup.moving.is_empty();
+    let of_body = slope(|row| row.deflection_m).filter(|_| measured);
     let mut measured = Measured::of(
         test,
         setup,

@@ -24,6 +24,9 @@ pub struct TestSettings {
     pub lowest_frequency_hz: f64,
     /// Result of the same test at twice the rate. None: it was not done.
     pub at_twice_the_rate: Option<TestResult>,
+    /// Load of which the elastic part of the curve has 20 % to 60 %, N: that of a body with the
+    /// wanted strength. None, or more than the body bears: its own largest load.
+    pub wanted_n: Option<f64>,
 }
 
 /// A test that is monitored.
@@ -110,6 +113,7 @@ impl<'a> Watch<'a> {
             places_m: &places,
             bonds: kind.and_then(|name| self.scene.bonds.get(name)),
             lowest_frequency_hz: self.settings.lowest_frequency_hz,
+            wanted_n: self.settings.wanted_n,
             broken: match self.test.kind.has_residual() {
                 true => self.has_passed_its_peak(record),
                 false => record.fell,

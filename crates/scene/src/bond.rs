@@ -48,6 +48,9 @@ pub struct BondKind {
     pub contact_beside_bond: bool,
     /// `calibrated_diameter`: mean diameter of the spheres with which they were calibrated, m.
     pub calibrated_diameter_m: Option<f64>,
+    /// `calibrated_across`: spheres across the thinnest part of the body with which they were
+    /// calibrated.
+    pub calibrated_across: Option<f64>,
 }
 
 table_schema! {
@@ -94,6 +97,10 @@ table_schema! {
     /// Mean diameter of the spheres with which these bonds were calibrated; `dem-run calibrate`
     /// writes it. The verdict does not call bodies of such spheres coarse.
     quantity("calibrated_diameter", &LENGTH).positive().otherwise("not calibrated");
+    /// Spheres across the thinnest part of the body with which these bonds were calibrated;
+    /// `dem-run calibrate` writes it. A body with others across is coarse: bonds near its faces
+    /// are a larger or smaller part of it.
+    number("calibrated_across").positive().otherwise("any");
 }
 
 plain_table! {
@@ -178,6 +185,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
         plasticity: table.read_by("plasticity", |field| plasticity(&field))?,
         contact_beside_bond: table.read("contact_beside_bond")?,
         calibrated_diameter_m: table.read("calibrated_diameter")?,
+        calibrated_across: table.read("calibrated_across")?,
     };
     conflicts::BOND.refuse_key("plasticity", &table)?;
     match kind.model {
@@ -370,4 +378,5 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     }
     listing.value("contact_beside_bond", &kind.contact_beside_bond);
     listing.value("calibrated_diameter", &kind.calibrated_diameter_m);
+    listing.value("calibrated_across", &kind.calibrated_across);
 }

@@ -4,7 +4,9 @@
 mod bench;
 mod choice;
 mod prospect;
+mod start;
 
 pub(crate) use bench::{Bench, overrides};
 pub(crate) use choice::{ModulusBy, SceneText, unknowns};
 pub(crate) use prospect::{Prospect, prospect};
+pub(crate) use start::{Beginning, pace};

@@ -195,7 +195,7 @@ pub fn refuse_unlistable(place: &str, text: &Path) -> Result<()> {
 }
 
 /// A word for sh.
-pub(crate) fn shell_word(text: &str) -> String {
+pub fn shell_word(text: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {
         text.to_owned()

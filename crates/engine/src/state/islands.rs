@@ -226,9 +226,9 @@ impl Islands {
         let floors_j = if any_new { floors_j(self) } else { Vec::new() };
         for (name, now) in (0..).zip(sums) {
             if now.key == 0 {
-                // All asleep: the energy that they had is in no sum.
-                if let Some(book) = self.books.get_mut(&name).filter(|book| book.key != 0) {
-                    book.begin_anew(&now);
+                // Nothing awake: what a wall has done, or what slept, is no error of what comes.
+                if now.own_j() != 0.0 || self.books.contains_key(&name) {
+                    self.books.entry(name).or_default().begin_anew(&now);
                 }
                 continue;
             }

@@ -38,10 +38,11 @@ type Say<'a> = &'a mut dyn FnMut(bool, &dyn Fn() -> String);
 fn of_facets(repairs: &Repairs, remarks: &Remarks, say: Say<'_>) {
     say(repairs.welded_vertices > 0, &|| {
         let corners = counted(repairs.welded_vertices, "vertex was", "vertices were");
-        format!(
-            "{corners} moved onto a near one to close the surface, over {} at most.",
-            show_length(repairs.weld_tolerance_m)
-        )
+        let most = match repairs.weld_tolerance_m {
+            below if below < 1e-9 => "less than 1 nm".to_owned(),
+            tolerance_m => format!("{} at most", show_length(tolerance_m)),
+        };
+        format!("{corners} moved onto a near one to close the surface, over {most}.")
     });
     say(repairs.degenerate_facets > 0, &|| {
         format!(

@@ -25,7 +25,8 @@ impl Summary {
             Some(_) => self.write_equilibrium_head(out)?,
             None => self.write_head(out)?,
         }
-        if !matches!(self.ended_by.as_str(), "end time" | "equilibrium") {
+        // An interruption is told by the message at the end.
+        if !["end time", "equilibrium", "interruption"].contains(&self.ended_by.as_str()) {
             writeln!(out, "ended by     {}", self.ended_by)?;
         }
         if let Some(change) = &self.resumed_with {

@@ -1,28 +1,23 @@
 //! One test of a packing with a factor on the numbers of each unknown.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use dem_calibration::{Start, Trial, Unknown};
-use dem_io::diagnostic::Kind;
+use dem_calibration::{Trial, Unknown};
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Scene, scene_from_text, set_text};
 
 use super::choice::SceneText;
-use dem_laboratory::test_result::{STIFFNESS, TestResult};
+use dem_laboratory::test_result::TestResult;
 use dem_plan::Plan;
 use dem_results::Summary;
 use dem_rig::arrange::{arrange, tested_body};
-use dem_rig::elastic_test::elastic_test;
-use dem_rig::evaluate::{BY_TRAVEL, EQ_18, FAILURE_FORCE, LARGEST_FORCE, MODULUS, STRENGTH};
+use dem_rig::evaluate::{FAILURE_FORCE, LARGEST_FORCE, STRENGTH};
 use dem_rig::plan_with_test;
 use dem_rig::setup::Setup;
 use dem_rig::watch::TestSettings;
 use dem_runner::{RunSettings, SoFar, run};
-
-/// First factors beyond this range are left to the tests with steps, which say why.
-const PLAUSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 /// The scene of a calibration and its packings.
 pub(crate) struct Bench<'a> {
@@ -36,6 +31,8 @@ pub(crate) struct Bench<'a> {
     pub(crate) others: &'a BTreeMap<String, Body>,
     /// Whether a time step of the scene above the limit is taken.
     pub(crate) force_step: bool,
+    /// `--set` values for stroke and rate of the tests: see [`super::start::pace`].
+    pub(crate) pace: Vec<String>,
     /// Threads of one test.
     pub(crate) threads: usize,
     /// Set to stop.
@@ -73,6 +70,10 @@ impl Bench<'_> {
         let planned = self.planned(factors, at, faster)?;
         let (scene, plan, setup, lowest_hz) = planned;
         let specimen = setup.as_ref().map(|setup| setup.specimen);
+        let strength_pa = scene.test.as_ref().and_then(|test| test.strength_pa);
+        let wanted_n = specimen
+            .zip(strength_pa)
+            .map(|(specimen, strength_pa)| strength_pa / specimen.stress_pa(1.0));
         let settings = RunSettings {
             folder: None,
             resume: None,
@@ -81,6 +82,7 @@ impl Bench<'_> {
             test: lowest_hz.map(|lowest_frequency_hz| TestSettings {
                 lowest_frequency_hz,
                 at_twice_the_rate: None,
+                wanted_n,
             }),
             setup,
         };
@@ -101,13 +103,14 @@ impl Bench<'_> {
     }
 
     /// The scene with these factors and packing `at`, its plan, and the lowest frequency of a test.
-    fn planned(
+    pub(super) fn planned(
         &self,
         factors: &[f64],
         at: usize,
         faster: f64,
     ) -> Result<(Scene, Plan, Option<Setup>, Option<f64>)> {
-        let overrides = overrides(&self.scene, self.unknowns, factors);
+        let mut overrides = overrides(&self.scene, self.unknowns, factors);
+        overrides.extend(self.pace.iter().cloned());
         let SceneText { text, source, .. } = self.scene;
         let scene = scene_from_text(text, source, &overrides)?;
         let mut bodies = self.others.clone();
@@ -124,54 +127,6 @@ impl Bench<'_> {
             setup,
             tested.map(|body| body.lowest_frequency_hz),
         ))
-    }
-
-    /// First factors: that on the modulus of the bonds from the stiffness of `packings` packings
-    /// without time steps, by two tests each; 1 on all others. None: nothing stands for the
-    /// stiffness, or it cannot be found so.
-    pub(crate) fn start(&self, packings: usize) -> Result<Option<Start>> {
-        let names = [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS];
-        let is_stiffness =
-            |unknown: &Unknown| unknown.is_proportional && names.contains(&unknown.result.as_str());
-        let Some(which) = self.unknowns.iter().position(is_stiffness) else {
-            return Ok(None);
-        };
-        let target = self.unknowns[which].target;
-        let began = Instant::now();
-        let mut factors = vec![1.0; self.unknowns.len()];
-        for _ in 0..2 {
-            let mut sum = 0.0;
-            for at in 0..packings {
-                match self.elastic(&factors, at, which)? {
-                    Some(value) => sum += value / packings as f64,
-                    None => return Ok(None),
-                }
-            }
-            factors[which] *= target / sum;
-            if !PLAUSIBLE.contains(&factors[which]) {
-                return Ok(None);
-            }
-        }
-        Ok(Some(Start {
-            factors,
-            tests: 2 * packings,
-            wall_s: began.elapsed().as_secs_f64(),
-        }))
-    }
-
-    /// The result `which` of packing `at` without time steps. None: there is no equilibrium.
-    fn elastic(&self, factors: &[f64], at: usize, which: usize) -> Result<Option<f64>> {
-        let (scene, mut plan, setup, _) = self.planned(factors, at, 1.0)?;
-        let goes_on = |_: f64| !self.interrupted.load(Ordering::Relaxed);
-        let Some(setup) = setup else {
-            return Ok(None);
-        };
-        match elastic_test(&mut plan.state, &scene, &setup, &goes_on) {
-            Ok(found) => Ok(found.figure(&self.unknowns[which].result)),
-            Err(error) if error.kind == Kind::Interrupted => Err(error),
-            // The tests themselves say more.
-            Err(_) => Ok(None),
-        }
     }
 
     /// What a run says.

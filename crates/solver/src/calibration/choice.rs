@@ -73,6 +73,20 @@ pub(crate) fn unknowns(
     Ok(found)
 }
 
+/// Whether an unknown varies all strengths that its bonds have in the scene.
+pub(crate) fn has_all_strengths(scene: &SceneText<'_>, unknown: &Unknown) -> Result<bool> {
+    let Some((table, _)) = unknown.numbers[0].path.rsplit_once('.') else {
+        return Ok(false);
+    };
+    let mut all = 0;
+    for key in STRENGTHS {
+        let path = format!("{table}.{key}");
+        let there = written_value(scene.text, scene.source, scene.overrides, &path)?;
+        all += usize::from(there.is_some());
+    }
+    Ok(unknown.numbers.len() == all)
+}
+
 /// Refuses a number that two unknowns have.
 fn refuse_twice(unknowns: &[Unknown]) -> Result<()> {
     let mut paths: Vec<&str> = Vec::new();

@@ -10,19 +10,19 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use dem_calibration::{
-    Case, End, FORMAT_VERSION, Record, Unknown, calibrate as search, page, read_record, report,
-    write_record,
+    Case, End, FORMAT_VERSION, Record, Unknown, calibrate as search, check_rate, page, read_record,
+    report, write_record,
 };
 use dem_io::diagnostic::Kind;
 use dem_io::hash::{file_hash, fnv1a_of_parts};
 use dem_io::safe_write::{explain, write_file};
 use dem_io::text::visible;
-use dem_io::units::show_length;
+use dem_io::units::{show_length, significant};
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
 use dem_results::folder::lock_file;
-use dem_scene::{Scene, material_text, scene_from_text, text_of};
+use dem_scene::{Scene, Test, material_text, scene_from_text, text_of};
 use dem_terminal::program::today;
 use dem_terminal::progress::{ProgressBar, progress_bar};
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
@@ -31,7 +31,9 @@ use super::packings::{Packings, smallest_extent_m};
 use super::pool::in_pool;
 use super::progress::LogOfTests;
 use super::scene_arguments::SceneArguments;
-use crate::calibration::{Bench, ModulusBy, Prospect, SceneText, prospect, unknowns};
+use crate::calibration::{
+    Beginning, Bench, ModulusBy, Prospect, SceneText, pace, prospect, unknowns,
+};
 use crate::interrupt::Interrupt;
 
 /// Packings of a shape, unless given.
@@ -126,7 +128,14 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
             true => resumed(&files.record, identity)?,
             false => {
                 files.remove()?;
-                new_record(&scene, &packings, unknowns, &prospect, identity)
+                new_record(
+                    &scene,
+                    &packings,
+                    unknowns,
+                    &prospect,
+                    &options.pack,
+                    identity,
+                )
             }
         };
         write_record(&files.record, &record)?;
@@ -137,6 +146,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
             packings: &packings,
             first: &first,
             threads,
+            test: scene.test.as_ref(),
             checks_rate: scene.test.as_ref().is_some_and(|test| test.rate_check),
             record_file: &files.record,
         };
@@ -218,6 +228,12 @@ fn is_at(_: &File, _: &Path) -> bool {
     true
 }
 
+/// The material file of a calibration that has not met its targets.
+fn not_met(material: &Path) -> PathBuf {
+    let stem = material.file_stem().unwrap_or_default().to_string_lossy();
+    material.with_file_name(format!("{stem}-not-met.toml"))
+}
+
 /// The files that a calibration writes.
 struct OutputFiles {
     /// The material file of each size.
@@ -276,7 +292,11 @@ impl OutputFiles {
 
     fn all(&self) -> Vec<PathBuf> {
         let others = [self.page.clone(), self.record.clone()];
-        self.materials.iter().cloned().chain(others).collect()
+        let materials = self
+            .materials
+            .iter()
+            .flat_map(|path| [path.clone(), not_met(path)]);
+        materials.chain(others).collect()
     }
 
     /// Refuses to overwrite inputs, and other files unless that is asked for.
@@ -366,6 +386,7 @@ fn new_record(
     packings: &Packings,
     unknowns: Vec<Unknown>,
     prospect: &Prospect,
+    pack: &[String],
     identity: u64,
 ) -> Record {
     let case = |name: String| Case {
@@ -388,6 +409,7 @@ fn new_record(
         scene: scene.source.clone(),
         unknowns,
         packings: packings.names(),
+        packed_with: pack.join(" "),
         wanted_curve: prospect.wanted_curve.clone(),
         cases: packings.case_names().into_iter().map(case).collect(),
     }
@@ -402,7 +424,9 @@ struct Job<'a> {
     /// The first packing of the first size.
     first: &'a Body,
     threads: usize,
-    /// Whether the scene asks for a test at twice the rate.
+    /// The test of the scene.
+    test: Option<&'a Test>,
+    /// Whether the scene asks for tests at twice the rate.
     checks_rate: bool,
     record_file: &'a Path,
 }
@@ -430,13 +454,14 @@ impl Job<'_> {
             .collect::<Result<_>>()?;
         let unknowns = record.unknowns.clone();
         let workers = count.min(self.threads);
-        let bench = Bench {
+        let mut bench = Bench {
             scene: *self.scene,
             unknowns: &unknowns,
             body: &self.packings.body,
             packings: &bodies,
             others: self.others,
             force_step: self.options.scene.force_step,
+            pace: Vec::new(),
             threads: self.threads / workers,
             interrupted: stop,
         };
@@ -446,9 +471,19 @@ impl Job<'_> {
         case.mean_diameter_m = bodies[0].mean_diameter_m();
         case.spheres_across = smallest_extent_m(&bodies[0]) / case.mean_diameter_m;
         if case.start.is_none() && case.rounds.is_empty() {
-            case.start = bench.start(count)?;
+            match bench.start()? {
+                Beginning::Unknown => {}
+                Beginning::Start(start) => case.start = Some(start),
+                Beginning::OutOfReach(problem, remedy) => {
+                    case.end = Some((0, End::NotMet(problem, remedy)));
+                }
+            }
             record.cases[at].clone_from(&case);
             write_record(self.record_file, record)?;
+        }
+        let travel_m = case.start.as_ref().and_then(|start| start.travel_m);
+        if let (Some(travel_m), Some(test)) = (travel_m, self.test) {
+            bench.pace = pace(test, travel_m);
         }
         let bar = self.options.progress_bar(&case.name);
         let parts = Mutex::new(vec![0.0; count]);
@@ -475,11 +510,14 @@ impl Job<'_> {
             write_record(self.record_file, record)
         };
         let names = self.packings.names();
-        let test = |factors: &[f64], packing: usize| {
-            let tested = bench.test(factors, packing, 1.0, &|fraction| tell(packing, fraction));
+        let test = |factors: &[f64], packing: usize, faster: f64| {
+            let tested = bench.test(factors, packing, faster, &|fraction| {
+                tell(packing, fraction)
+            });
             tested.map_err(|error| error.within(&names[packing]))
         };
-        let mut done = search(&unknowns, count, &mut case, workers, &test, &save);
+        let usual = |factors: &[f64], packing: usize| test(factors, packing, 1.0);
+        let mut done = search(&unknowns, count, &mut case, workers, &usual, &save);
         if let Err(error) = &done
             && error.kind == Kind::Unstable
         {
@@ -488,11 +526,11 @@ impl Job<'_> {
             done = Ok(());
         }
         if done.is_ok() && self.checks_rate && case.is_met() && !case.has_rate_check() {
-            let factors = case.result().map(|round| round.factors.clone());
-            match bench.test(&factors.unwrap_or_default(), 0, 2.0, &|_| ()) {
-                Ok(trial) => case.at_twice_the_rate = Some(trial),
+            let twice = |factors: &[f64], packing: usize| test(factors, packing, 2.0);
+            match check_rate(&mut case, workers, &twice, &save) {
                 Err(error) if error.kind == Kind::Interrupted => done = Err(error),
                 Err(error) => case.rate_problem = Some(error.problem),
+                Ok(()) => {}
             }
         }
         bar.finish_and_clear();
@@ -525,16 +563,20 @@ fn finish(
     })?;
     let mut written = Vec::new();
     for (case, path) in record.cases.iter().zip(&files.materials) {
-        if case.is_met() {
+        let path = match case.is_met() {
+            true => path.clone(),
+            false => not_met(path),
+        };
+        if case.result().is_some() {
             let text = material_of(record, case, scene)?;
-            write_file(path, |out| out.write_all(text.as_bytes()))?;
+            write_file(&path, |out| out.write_all(text.as_bytes()))?;
             written.push(path);
         }
     }
     if options.scene.json {
         write_standard_json(&record.without_curves())?;
     } else if !options.quiet {
-        let all = written.into_iter().chain([&files.page, &files.record]);
+        let all = written.iter().chain([&files.page, &files.record]);
         let all: Vec<String> = all.map(|path| path.display().to_string()).collect();
         write_standard_output(|out| {
             write!(out, "{}", report(record, most_error))?;
@@ -564,11 +606,11 @@ fn material_of(record: &Record, case: &Case, scene: &SceneText<'_>) -> Result<St
         .filter_map(|number| number.path.strip_prefix("bonds.")?.split('.').next())
         .collect();
     let diameter = show_length(case.mean_diameter_m);
-    overrides.extend(
-        bonds
-            .iter()
-            .map(|bond| format!("bonds.{bond}.calibrated_diameter=\"{diameter}\"")),
-    );
+    let across = significant(case.spheres_across, 3);
+    for bond in bonds.iter().filter(|_| case.is_met()) {
+        overrides.push(format!("bonds.{bond}.calibrated_diameter=\"{diameter}\""));
+        overrides.push(format!("bonds.{bond}.calibrated_across={across}"));
+    }
     let tables = material_text(scene.text, scene.source, &overrides)?;
     Ok(format!("{}{tables}", dem_calibration::origin(record, case)))
 }

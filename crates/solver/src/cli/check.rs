@@ -41,10 +41,15 @@ pub(super) fn check_scene(
     form: Form,
 ) -> Result<()> {
     if !arguments.names_a_scene() {
+        let within = Path::new(&arguments.place()).join("scene.toml");
+        let remedy = match within.is_file() {
+            true => format!("name its scene: {}", within.display()),
+            false => "name a scene; dem-run describes a body without check".to_owned(),
+        };
         return Err(Diagnostic::input(
             arguments.place(),
             "this is not a scene (.toml)",
-            "name a scene; dem-run describes a body without check",
+            remedy,
         ));
     }
     in_pool(arguments.threads, |threads| {

@@ -18,6 +18,7 @@ use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::{Basis, Sizes};
 use dem_scene::reference;
+use dem_study::jobs::shell_word;
 use dem_terminal::standard_output::write_standard_output;
 
 use self::answers::{Answers, answers};
@@ -65,9 +66,11 @@ pub(super) fn new(arguments: &NewArguments) -> Result<()> {
         if let Some(remark) = remark {
             writeln!(out, "note: {remark}")?;
         }
+        let scene = shell_word(&format!("{shown}/scene.toml"));
+        let results = shell_word(&format!("{shown}/results"));
         writeln!(
             out,
-            "next:\n  dem-run check {shown}/scene.toml\n  dem-run {shown}/scene.toml --output {shown}/results"
+            "next:\n  dem-run check {scene}\n  dem-run {scene} --output {results}"
         )
     })
 }

@@ -244,6 +244,7 @@ fn arranged(
         return Ok((scene, None, None));
     };
     let test = TestSettings {
+        wanted_n: None,
         lowest_frequency_hz: body.lowest_frequency_hz,
         at_twice_the_rate: None,
     };

@@ -135,12 +135,12 @@ fn an_interrupted_calibration_is_resumed() {
     let case = &mut cut["cases"][0];
     // The test at twice the rate is done by itself.
     assert!(!case["at_twice_the_rate"].is_null());
-    let rate = case["at_twice_the_rate"]["results"].clone();
+    let rate = case["at_twice_the_rate"]["trials"].clone();
     case["at_twice_the_rate"] = Value::Null;
     bench.write("clay.json", cut.to_string());
     assert!(calibrate(&bench, &["--resume"]).status.success());
     let again = record(&bench);
-    assert_eq!(again["cases"][0]["at_twice_the_rate"]["results"], rate);
+    assert_eq!(again["cases"][0]["at_twice_the_rate"]["trials"], rate);
     let case = &mut cut["cases"][0];
     case["end"] = Value::Null;
     let rounds = case["rounds"].as_array_mut().unwrap();
@@ -221,6 +221,86 @@ fn files_of_others_stay() {
     );
     assert_ne!(failed.status.code(), Some(0));
     assert!(!bench.path("clay.toml").exists());
+    let marked = std::fs::read_to_string(bench.path("clay-not-met.toml"));
+    assert!(marked.is_ok_and(|text| text.starts_with("# NOT CALIBRATED: ")));
+    assert!(calibrate(&bench, &["--quiet", "--force"]).status.success());
+    assert!(!bench.path("clay-not-met.toml").exists());
+}
+
+/// `dem-run calibrate` of the cylinder of agglomerate, in compression, with coarse spheres.
+fn of_agglomerate(bench: &Bench, options: &[&str]) -> std::process::Output {
+    let cases = root().join("tests/calibrations");
+    let shape = cases.join("cylinder.stl").display().to_string();
+    let mut command = dem_run();
+    command.arg("calibrate").arg(cases.join("agglomerate.toml"));
+    command.arg("--output").arg(bench.path("clay.toml"));
+    command
+        .args(options)
+        .args(["--packings", "2", "--", &shape]);
+    command.args(["--diameter", "1.8mm..2.2mm", "--overlap", "0.25"]);
+    command.args(["--bond-range", "1.1"]).output().unwrap()
+}
+
+/// Contacts at plates take a third of the deformation, and a first guess of the strength is 500
+/// times too large: the static solver knows both. The file says with what the bonds were found, and
+/// what other packings give.
+#[test]
+fn a_packed_cylinder_is_calibrated_in_few_rounds() {
+    let bench = Bench::new();
+    let far = [
+        "--set",
+        "bonds.agglomerate.failure.tensile_strength=100 MPa",
+        "--set",
+        "bonds.agglomerate.failure.cohesion=200 MPa",
+    ];
+    let printed = of_agglomerate(&bench, &far);
+    assert!(printed.status.success(), "{printed:?}");
+    let said = String::from_utf8(printed.stdout).unwrap();
+    assert!(
+        said.contains("others       mean of 2 other packings, 95 %:"),
+        "{said}"
+    );
+    assert!(said.contains("half rate    modulus by travel "), "{said}");
+    let record = record(&bench);
+    let case = &record["cases"][0];
+    let rounds = case["rounds"].as_array().unwrap();
+    assert!(rounds.len() <= 4, "{}", rounds.len());
+    // The modulus needs no correction by tests with steps.
+    let first = &rounds[0]["trials"];
+    let modulus = |at: usize| first[at]["results"][0].as_f64().unwrap();
+    let mean = 0.5 * (modulus(0) + modulus(1));
+    assert!((mean / 80e6 - 1.0).abs() < 0.02, "{mean}");
+    assert!(
+        !first[0]["results"][1].is_null(),
+        "it did not break: {first}"
+    );
+    let material = std::fs::read_to_string(bench.path("clay.toml")).unwrap();
+    for part in [
+        "# Packings: seed 1, seed 2, of dem-pack ",
+        "# Spheres: 1.9",
+        "# others: mean of 2 other packings",
+        "calibrated_diameter = ",
+        "calibrated_across = 6.",
+    ] {
+        assert!(material.contains(part), "{part}: {material}");
+    }
+}
+
+/// Contacts alone are softer than the target: the static solver says so before any test.
+#[test]
+fn a_modulus_out_of_reach_costs_no_test() {
+    let bench = Bench::new();
+    let soft = ["--set", "materials.agglomerate.young_modulus=2 MPa"];
+    let printed = of_agglomerate(&bench, &soft);
+    assert_eq!(printed.status.code(), Some(1), "{printed:?}");
+    let said = String::from_utf8(printed.stderr).unwrap();
+    assert!(
+        said.contains("the modulus by travel of 80 MPa is out of reach: with bonds.agglomerate.young_modulus of"),
+        "{said}"
+    );
+    assert!(said.contains("--modulus specimen"), "{said}");
+    assert_eq!(record(&bench)["cases"][0]["rounds"], serde_json::json!([]));
+    assert!(!bench.path("clay-not-met.toml").exists());
 }
 
 /// A first guess of the strength that is far too large or too small.

@@ -229,6 +229,16 @@ fn a_body_of_few_spheres_is_coarse_unless_it_is_rigid_or_calibrated() {
     let calibrated = |factor: f64| format!("bonds.any.calibrated_diameter={}", factor * diameter_m);
     assert_eq!(verdict(&["--set", &calibrated(1.05)])["word"], "sound");
     assert_eq!(verdict(&["--set", &calibrated(1.2)])["word"], "coarse");
+    // In a body of as many across, or of more.
+    let across = |number: f64| format!("bonds.any.calibrated_across={number}");
+    let with = |number: f64| verdict(&["--set", &calibrated(1.0), "--set", &across(number)]);
+    assert_eq!(with(5.2)["word"], "sound");
+    assert_eq!(with(8.0)["word"], "coarse");
+    let why = with(8.0)["coarse"][0].as_str().unwrap().to_owned();
+    assert!(
+        why.contains("4.9 particles across; its bonds were calibrated in a body of 8:"),
+        "{why}"
+    );
     let rigid = ["--set", "bodies.row.start_as=clump"];
     assert_eq!(verdict(&rigid)["word"], "sound", "{}", verdict(&rigid));
 }

@@ -218,7 +218,7 @@ fn wrong_answers_are_refused() {
     bench.write("text.stl", "no facets");
     bench.write("cube.stl", box_stl([10, 10, 10]));
     for (options, parts) in [
-        (&["drop", "--mass", "700 g"][..], "--mass: '700 g' gives 4"),
+        (&["drop", "--mass", "700 g"][..], "--mass: 700 g is 4"),
         (
             &["drop", "--mass", "1 mg"],
             "not between 20 and 23000 kg/m3; write a mass from ",

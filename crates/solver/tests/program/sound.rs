@@ -260,3 +260,31 @@ walls.belt = { box = { min = [-1, -1, -0.1], max = [9, 1, 0] }, material = \"sto
         summary["verdict"]
     );
 }
+
+/// A belt has thrown one ball off when a run is continued; the work that it did is not missing in
+/// the energy of the next ball that lands on it.
+#[test]
+fn a_body_that_lands_on_a_belt_after_a_continuation_is_sound() {
+    let bench = Bench::new();
+    let scene = "version = 1
+run = { end_time = \"0.3 s\", gravity = [0, 0, -9.81] }
+materials.stone = { density = 2000, young_modulus = \"50 MPa\", poisson_ratio = 0.3 }
+contacts.stone-stone = { restitution = 0.3, friction = 0.5, rolling_friction = 0.1 }
+bodies.first = { particles = [[0.1, 0, 0.012, 0.01]], material = \"stone\" }
+bodies.second = { particles = [[0, 0.2, 0.8, 0.01]], material = \"stone\" }
+walls.belt = { box = { min = [-1, -1, -0.1], max = [0.2, 1, 0] }, material = \"stone\", surface_velocity = [2, 0, 0] }
+";
+    let path = bench.write("belt.toml", scene);
+    let folder = bench.path("out").display().to_string();
+    bench.good(&path, &["--quiet", "--output", &folder]);
+    let longer = ["--resume", "--set", "run.end_time=0.5"];
+    let all = [&["--json", "--quiet", "--output", &folder], &longer[..]].concat();
+    let summary: Value = serde_json::from_str(&bench.good(&path, &all)).unwrap();
+    let landed_j = summary["balance"]["wall_work_j"].as_f64().unwrap();
+    assert!(landed_j > 0.02, "{landed_j}");
+    assert_eq!(
+        summary["verdict"]["word"], "sound",
+        "{}",
+        summary["verdict"]
+    );
+}

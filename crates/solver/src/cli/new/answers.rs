@@ -181,11 +181,12 @@ fn read_mass(text: &str, volume_m3: f64) -> Result<f64> {
     Err(Diagnostic::input(
         "",
         format!(
-            "'{text}' gives {} kg/m3 over the volume of the shape, not between {lightest} and {heaviest} kg/m3",
-            significant(density, 4)
+            "{} is {} kg/m3 over the volume of the shape, not between {lightest} and {heaviest} kg/m3",
+            Value::new(mass_kg, "kg").text(),
+            significant(density, 3)
         ),
         format!(
-            "write a mass from {} to {}, or check the size",
+            "write a mass from {} to {} with its unit, or check the size",
             mass(lightest),
             mass(heaviest)
         ),

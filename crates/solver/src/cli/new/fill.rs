@@ -20,7 +20,8 @@ impl Value {
         Self::new(metres, "m")
     }
 
-    /// With six digits, in a unit that suits its size.
+    /// In a unit that suits its size: lengths with six digits, as bodies must fit between walls,
+    /// the rest with three.
     pub(super) fn text(self) -> String {
         let size = self.si.abs();
         let (factor, unit) = match self.unit {
@@ -33,7 +34,8 @@ impl Value {
             "rad/s" => (30.0 / PI, "rpm"),
             unit => (1.0, unit),
         };
-        format!("{} {unit}", significant(factor * self.si, 6))
+        let digits = if self.unit == "m" { 6 } else { 3 };
+        format!("{} {unit}", significant(factor * self.si, digits))
     }
 }
 

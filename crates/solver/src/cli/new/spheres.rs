@@ -80,10 +80,10 @@ fn remark(report: &BodyReport, fineness: Fineness, wanted_m: Option<f64>) -> Opt
     let across = significant(thinnest.particles_across, 2);
     let wanted_m = wanted_m.unwrap_or(thinnest.thickness_m / fineness.across);
     Some(format!(
-        "about {across} spheres across the thinnest part ({}), as {} spheres are used: the result will be coarse; \
+        "with {} spheres, about {across} lie across the thinnest part ({}): the result will be coarse; \
          --diameter {} gives {ENOUGH_ACROSS}",
-        show_length(thinnest.thickness_m),
         report.quality.particles,
+        show_length(thinnest.thickness_m),
         range(wanted_m)
     ))
 }

@@ -1,0 +1,298 @@
+//! First factors of a calibration, from equilibria without time steps: modulus and contacts are
+//! springs in series; a body fails when its most loaded bonds do.
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use dem_calibration::{Start, Unknown};
+use dem_io::Result;
+use dem_io::diagnostic::Kind;
+use dem_io::units::show_quantity;
+use dem_laboratory::TestType;
+use dem_laboratory::test_result::STIFFNESS;
+use dem_plan::measure::bond_utilisation;
+use dem_rig::elastic_test::elastic_test;
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, STRENGTH};
+use dem_scene::Test;
+
+use super::bench::Bench;
+use super::choice::has_all_strengths;
+
+/// First factors beyond this range are left to the tests with steps, which say why.
+const PLAUSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+/// Least change of the logarithm of the modulus of bonds that shows the part of the contacts.
+const LEAST_CHANGE: f64 = 0.2;
+/// A first modulus is near enough.
+const NEAR: f64 = 0.02;
+/// Solutions of the first packing at most.
+const MOST_SOLUTIONS: usize = 4;
+/// Least slope of ln(result) over ln(factor) by which a first modulus is corrected.
+const LEAST_SLOPE: f64 = 0.25;
+/// How much stiffer bonds may have to be before it is asked whether that helps.
+const MUCH_STIFFER: f64 = 10.0;
+/// Largest stroke over the travel at failure that tests need: strong packings, soft pins.
+const ROOM: f64 = 1.6;
+
+/// What is known before the first round.
+pub(crate) enum Beginning {
+    /// Nothing: it begins with the numbers of the scene.
+    Unknown,
+    /// The first factors.
+    Start(Start),
+    /// The modulus cannot be met: problem and remedy.
+    OutOfReach(String, String),
+}
+
+/// Part of the bonds whose stress in the whole body is above their strength when it fails, as found
+/// in calibrations: a bar breaks where it is bent the most, a compressed body bears on when
+/// many of its bonds have broken.
+fn failed_bonds(kind: Option<TestType>) -> f64 {
+    match kind {
+        Some(TestType::FourPointBending | TestType::ThreePointBending) => 0.0005,
+        Some(TestType::Compression) => 0.05,
+        _ => 0.015,
+    }
+}
+
+/// `--set` values with which the stroke is long enough for a body that fails at this travel, and
+/// the periods of the test are spread over that travel, not over the stroke.
+pub(crate) fn pace(test: &Test, travel_m: f64) -> Vec<String> {
+    let stroke_m = test.stroke_m.max(ROOM * travel_m);
+    let mut sets = vec![format!("test.stroke={stroke_m:e}")];
+    if test.rate_m_s.is_none() {
+        let periods = test.periods * stroke_m / travel_m;
+        sets.push(format!("test.periods={periods:.4e}"));
+    }
+    sets
+}
+
+/// What equilibria of all packings say in the mean.
+struct Elastic {
+    /// The result that stands for the stiffness.
+    result: f64,
+    /// Load over travel, N/m.
+    stiffness_n_m: f64,
+    /// Stress over strength of the bonds at the wanted load: below it are all but a small part.
+    utilisation: f64,
+    /// The wanted load, N.
+    wanted_n: Option<f64>,
+}
+
+impl Bench<'_> {
+    /// First factors: on the modulus of the bonds, with which packings have the wanted stiffness in
+    /// equilibria without time steps; on their strength, with which a small part of the bonds is at
+    /// its strength under the wanted load.
+    pub(crate) fn start(&self) -> Result<Beginning> {
+        let is_proportional = self.unknowns.iter().all(|unknown| unknown.is_proportional);
+        let names = [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS];
+        let is_stiffness = |unknown: &Unknown| names.contains(&unknown.result.as_str());
+        let which = self.unknowns.iter().position(is_stiffness);
+        let Some(which) = which.filter(|_| is_proportional) else {
+            return Ok(Beginning::Unknown);
+        };
+        let began = Instant::now();
+        let target = self.unknowns[which].target;
+        let mut factors = vec![1.0; self.unknowns.len()];
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        // The first packing tells the part of the contacts, all packings tell the mean.
+        let springs = loop {
+            let Some(found) = self.equilibrium(&factors, 0, which)? else {
+                return Ok(Beginning::Unknown);
+            };
+            points.push([factors[which], found.result]);
+            let springs = Springs::of(&points);
+            let is_known = points.len() > 1;
+            let most = MUCH_STIFFER * points.iter().map(|[factor, _]| *factor).fold(1.0, f64::max);
+            let next = match springs.factor_for(target) {
+                Some(factor) => factor.min(most),
+                None if points.len() < MOST_SOLUTIONS => most,
+                None => {
+                    let unknown = &self.unknowns[which];
+                    return Ok(out_of_reach(unknown, factors[which], found.result));
+                }
+            };
+            let change = (next / factors[which]).ln();
+            let change = match is_known {
+                true => change,
+                false => change.signum() * change.abs().max(LEAST_CHANGE),
+            };
+            factors[which] *= change.exp();
+            if !PLAUSIBLE.contains(&factors[which]) {
+                return Ok(Beginning::Unknown);
+            }
+            if is_known && (change.abs() < NEAR || next < most || points.len() == MOST_SOLUTIONS) {
+                break springs;
+            }
+        };
+        let Some(found) = self.equilibria(&factors, which)? else {
+            return Ok(Beginning::Unknown);
+        };
+        let mut slopes = vec![1.0; factors.len()];
+        slopes[which] = springs.slope(factors[which]);
+        factors[which] *= (target / found.result).powf(1.0 / slopes[which].max(LEAST_SLOPE));
+        for (unknown, factor) in self.unknowns.iter().zip(&mut factors) {
+            let is_strength =
+                unknown.result == STRENGTH && has_all_strengths(&self.scene, unknown)?;
+            if is_strength && PLAUSIBLE.contains(&found.utilisation) {
+                *factor = found.utilisation;
+            }
+        }
+        Ok(Beginning::Start(Start {
+            factors,
+            slopes,
+            travel_m: found
+                .wanted_n
+                .map(|wanted_n| wanted_n / found.stiffness_n_m),
+            tests: points.len() + self.packings.len(),
+            wall_s: began.elapsed().as_secs_f64(),
+        }))
+    }
+
+    /// Equilibria of all packings, and the mean of what they say. None: one has none.
+    fn equilibria(&self, factors: &[f64], which: usize) -> Result<Option<Elastic>> {
+        let mut sum: Option<Elastic> = None;
+        let count = self.packings.len() as f64;
+        for at in 0..self.packings.len() {
+            let Some(one) = self.equilibrium(factors, at, which)? else {
+                return Ok(None);
+            };
+            let before = sum.take().unwrap_or(Elastic {
+                result: 0.0,
+                stiffness_n_m: 0.0,
+                utilisation: 0.0,
+                wanted_n: None,
+            });
+            sum = Some(Elastic {
+                result: before.result + one.result / count,
+                stiffness_n_m: before.stiffness_n_m + one.stiffness_n_m / count,
+                utilisation: before.utilisation + one.utilisation / count,
+                wanted_n: one.wanted_n,
+            });
+        }
+        Ok(sum)
+    }
+
+    /// The equilibria of packing `at`. None: there are none.
+    fn equilibrium(&self, factors: &[f64], at: usize, which: usize) -> Result<Option<Elastic>> {
+        let (scene, mut plan, setup, _) = self.planned(factors, at, 1.0)?;
+        let goes_on = |_: f64| !self.interrupted.load(Ordering::Relaxed);
+        let Some(setup) = setup else {
+            return Ok(None);
+        };
+        let found = match elastic_test(&mut plan.state, &scene, &setup, &goes_on) {
+            Ok(found) => found,
+            Err(error) if error.kind == Kind::Interrupted => return Err(error),
+            // The tests themselves say more.
+            Err(_) => return Ok(None),
+        };
+        let result = found.figure(&self.unknowns[which].result);
+        let stiffness_n_m = found.figure(STIFFNESS);
+        let (Some(result), Some(stiffness_n_m), Some(last)) =
+            (result, stiffness_n_m, found.rows.last())
+        else {
+            return Ok(None);
+        };
+        let state = &plan.state;
+        let mut utilisations: Vec<f64> = (0..state.bonds.len())
+            .map(|at| bond_utilisation(state, at))
+            .collect();
+        let kind = scene.test.as_ref().map(|test| test.kind);
+        let above = (failed_bonds(kind) * utilisations.len() as f64) as usize;
+        let above = above.min(utilisations.len().saturating_sub(1));
+        let strength_pa = scene.test.as_ref().and_then(|test| test.strength_pa);
+        let wanted_n = strength_pa.map(|strength_pa| strength_pa / setup.specimen.stress_pa(1.0));
+        let utilisation = match (wanted_n, utilisations.is_empty()) {
+            (Some(wanted_n), false) => {
+                let (_, one, _) = utilisations.select_nth_unstable_by(above, |a, b| b.total_cmp(a));
+                *one * wanted_n / last.load_n()
+            }
+            _ => 0.0,
+        };
+        Ok(Some(Elastic {
+            result,
+            stiffness_n_m,
+            utilisation,
+            wanted_n,
+        }))
+    }
+}
+
+/// The stiffness 1/(a + b/f) of a body whose bonds are f times as stiff: contacts deform as well.
+struct Springs {
+    /// 1/result of the contacts alone.
+    contacts: f64,
+    /// 1/result of the bonds at a factor of 1.
+    bonds: f64,
+}
+
+impl Springs {
+    /// Through the last two of these factors and results, at least one; a single one knows no
+    /// contacts.
+    fn of(points: &[[f64; 2]]) -> Self {
+        let last = points[points.len() - 1];
+        let alone = Self {
+            contacts: 0.0,
+            bonds: last[0] / last[1],
+        };
+        let Some(before) = points.len().checked_sub(2).map(|at| points[at]) else {
+            return alone;
+        };
+        let bonds = (1.0 / last[1] - 1.0 / before[1]) / (1.0 / last[0] - 1.0 / before[0]);
+        match bonds > 0.0 {
+            true => Self {
+                contacts: (1.0 / last[1] - bonds / last[0]).max(0.0),
+                bonds,
+            },
+            false => alone,
+        }
+    }
+
+    /// The factor for a result. None: the contacts alone are softer.
+    fn factor_for(&self, target: f64) -> Option<f64> {
+        let left = 1.0 / target - self.contacts;
+        (left > 0.0).then(|| self.bonds / left)
+    }
+
+    /// d ln(result)/d ln(factor).
+    fn slope(&self, factor: f64) -> f64 {
+        let bonds = self.bonds / factor;
+        bonds / (self.contacts + bonds)
+    }
+}
+
+fn out_of_reach(unknown: &Unknown, factor: f64, result: f64) -> Beginning {
+    let show = |value: f64| show_quantity(value, &unknown.unit);
+    let number = &unknown.numbers[0];
+    let problem = format!(
+        "the {} of {} is out of reach: with {} of {} it is {}, as the contacts at pins or plates deform",
+        unknown.result,
+        show(unknown.target),
+        number.path,
+        number.text(factor),
+        show(result)
+    );
+    let remedy = match unknown.result.as_str() {
+        MODULUS => "take smaller spheres, or correct the target",
+        _ => {
+            "calibrate the modulus of the specimen itself: --modulus specimen; or take smaller spheres, or correct the target"
+        }
+    };
+    Beginning::OutOfReach(problem, remedy.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Springs;
+
+    #[test]
+    fn bonds_and_contacts_are_springs_in_series() {
+        let stiffness = |factor: f64| 1.0 / (0.1 + 0.05 / factor);
+        let springs = Springs::of(&[1.0, 3.0].map(|factor| [factor, stiffness(factor)]));
+        let factor = springs.factor_for(8.0).map_or(0.0, |factor| factor - 2.0);
+        assert!(factor.abs() < 1e-9, "{factor}");
+        assert!(springs.factor_for(10.01).is_none());
+        let [low, high] = [1.99, 2.01].map(stiffness);
+        let slope = (high / low).ln() / (2.01_f64 / 1.99).ln();
+        assert!((springs.slope(2.0) / slope - 1.0).abs() < 1e-4);
+    }
+}
