@@ -87,8 +87,8 @@ pub struct Start {
     pub factors: Vec<f64>,
     /// ln(result) over ln(factor) of each unknown there.
     pub slopes: Vec<f64>,
-    /// Mean travel at which a body with the wanted strength fails, m. None: there is no strength to
-    /// meet.
+    /// Travel at which a body with the wanted strength fails, m: the largest of the packings. None:
+    /// there is no strength to meet.
     pub travel_m: Option<f64>,
     /// Number of tests without steps.
     pub tests: usize,
@@ -180,6 +180,8 @@ impl Case {
                 .iter()
                 .flat_map(|round| round.trials.iter().flatten())
         };
-        (trials().map(|trial| trial.wall_s).sum(), trials().count())
+        // The sum of no numbers is -0.
+        let wall_s = trials().fold(0.0, |sum, trial| sum + trial.wall_s);
+        (wall_s, trials().count())
     }
 }

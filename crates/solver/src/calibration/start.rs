@@ -30,7 +30,7 @@ const MOST_SOLUTIONS: usize = 4;
 const LEAST_SLOPE: f64 = 0.25;
 /// How much stiffer bonds may have to be before it is asked whether that helps.
 const MUCH_STIFFER: f64 = 10.0;
-/// Largest stroke over the travel at failure that tests need: strong packings, soft pins.
+/// Stroke over the travel at failure that strong packings need.
 const ROOM: f64 = 1.6;
 
 /// What is known before the first round.
@@ -55,9 +55,10 @@ fn failed_bonds(kind: Option<TestType>) -> f64 {
 }
 
 /// `--set` values with which the stroke is long enough for a body that fails at this travel, and
-/// the periods of the test are spread over that travel, not over the stroke.
-pub(crate) fn pace(test: &Test, travel_m: f64) -> Vec<String> {
-    let stroke_m = test.stroke_m.max(ROOM * travel_m);
+/// the periods of the test are spread over that travel, not over the stroke. A body of spheres of
+/// this mean diameter may rock by as much until all pins touch.
+pub(crate) fn pace(test: &Test, travel_m: f64, mean_diameter_m: f64) -> Vec<String> {
+    let stroke_m = test.stroke_m.max(ROOM * travel_m + mean_diameter_m);
     let mut sets = vec![format!("test.stroke={stroke_m:e}")];
     if test.rate_m_s.is_none() {
         let periods = test.periods * stroke_m / travel_m;
@@ -70,12 +71,11 @@ pub(crate) fn pace(test: &Test, travel_m: f64) -> Vec<String> {
 struct Elastic {
     /// The result that stands for the stiffness.
     result: f64,
-    /// Load over travel, N/m.
-    stiffness_n_m: f64,
+    /// Travel at the wanted load, with the way until all touches, m; the largest of the packings.
+    /// None: there is no strength to meet.
+    travel_m: Option<f64>,
     /// Stress over strength of the bonds at the wanted load: below it are all but a small part.
     utilisation: f64,
-    /// The wanted load, N.
-    wanted_n: Option<f64>,
 }
 
 impl Bench<'_> {
@@ -140,9 +140,7 @@ impl Bench<'_> {
         Ok(Beginning::Start(Start {
             factors,
             slopes,
-            travel_m: found
-                .wanted_n
-                .map(|wanted_n| wanted_n / found.stiffness_n_m),
+            travel_m: found.travel_m,
             tests: points.len() + self.packings.len(),
             wall_s: began.elapsed().as_secs_f64(),
         }))
@@ -158,15 +156,14 @@ impl Bench<'_> {
             };
             let before = sum.take().unwrap_or(Elastic {
                 result: 0.0,
-                stiffness_n_m: 0.0,
+                travel_m: None,
                 utilisation: 0.0,
-                wanted_n: None,
             });
+            let further = |travel_m: f64| before.travel_m.map_or(travel_m, |far| far.max(travel_m));
             sum = Some(Elastic {
                 result: before.result + one.result / count,
-                stiffness_n_m: before.stiffness_n_m + one.stiffness_n_m / count,
+                travel_m: one.travel_m.map(further),
                 utilisation: before.utilisation + one.utilisation / count,
-                wanted_n: one.wanted_n,
             });
         }
         Ok(sum)
@@ -208,11 +205,11 @@ impl Bench<'_> {
             }
             _ => 0.0,
         };
+        let further_m = |wanted_n: f64| (wanted_n - last.load_n()) / stiffness_n_m;
         Ok(Some(Elastic {
             result,
-            stiffness_n_m,
+            travel_m: wanted_n.map(|wanted_n| last.travel_m + further_m(wanted_n)),
             utilisation,
-            wanted_n,
         }))
     }
 }

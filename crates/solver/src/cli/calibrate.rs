@@ -483,7 +483,7 @@ impl Job<'_> {
         }
         let travel_m = case.start.as_ref().and_then(|start| start.travel_m);
         if let (Some(travel_m), Some(test)) = (travel_m, self.test) {
-            bench.pace = pace(test, travel_m);
+            bench.pace = pace(test, travel_m, case.mean_diameter_m);
         }
         let bar = self.options.progress_bar(&case.name);
         let parts = Mutex::new(vec![0.0; count]);
