@@ -22,8 +22,6 @@ use super::choice::has_all_strengths;
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 /// Least change of the logarithm of the modulus of bonds that shows the part of the contacts.
 const LEAST_CHANGE: f64 = 0.2;
-/// A first modulus is near enough.
-const NEAR: f64 = 0.02;
 /// Solutions of the first packing at most.
 const MOST_SOLUTIONS: usize = 4;
 /// Least slope of ln(result) over ln(factor) by which a first modulus is corrected.
@@ -67,10 +65,20 @@ pub(crate) fn pace(test: &Test, travel_m: f64, mean_diameter_m: f64) -> Vec<Stri
     sets
 }
 
+/// What equilibria of one packing with several moduli say.
+enum Sprung {
+    /// The springs, and the number of solutions.
+    Springs(Springs, usize),
+    /// There is no equilibrium.
+    Unknown,
+    /// Problem and remedy.
+    OutOfReach(String, String),
+}
+
 /// What equilibria of all packings say in the mean.
 struct Elastic {
-    /// The result that stands for the stiffness.
-    result: f64,
+    /// The result that stands for the stiffness, if it is to be met.
+    result: Option<f64>,
     /// Travel at the wanted load, with the way until all touches, m; the largest of the packings.
     /// None: there is no strength to meet.
     travel_m: Option<f64>,
@@ -83,54 +91,43 @@ impl Bench<'_> {
     /// equilibria without time steps; on their strength, with which a small part of the bonds is at
     /// its strength under the wanted load.
     pub(crate) fn start(&self) -> Result<Beginning> {
-        let is_proportional = self.unknowns.iter().all(|unknown| unknown.is_proportional);
-        let names = [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS];
-        let is_stiffness = |unknown: &Unknown| names.contains(&unknown.result.as_str());
-        let which = self.unknowns.iter().position(is_stiffness);
-        let Some(which) = which.filter(|_| is_proportional) else {
+        let unknowns = self.unknowns;
+        let of_test = [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS, STRENGTH];
+        let is_of_test = |unknown: &Unknown| of_test.contains(&unknown.result.as_str());
+        if !unknowns
+            .iter()
+            .all(|one| one.is_proportional && is_of_test(one))
+        {
             return Ok(Beginning::Unknown);
-        };
+        }
         let began = Instant::now();
-        let target = self.unknowns[which].target;
-        let mut factors = vec![1.0; self.unknowns.len()];
-        let mut points: Vec<[f64; 2]> = Vec::new();
-        // The first packing tells the part of the contacts, all packings tell the mean.
-        let springs = loop {
-            let Some(found) = self.equilibrium(&factors, 0, which)? else {
-                return Ok(Beginning::Unknown);
-            };
-            points.push([factors[which], found.result]);
-            let springs = Springs::of(&points);
-            let is_known = points.len() > 1;
-            let most = MUCH_STIFFER * points.iter().map(|[factor, _]| *factor).fold(1.0, f64::max);
-            let next = match springs.factor_for(target) {
-                Some(factor) => factor.min(most),
-                None if points.len() < MOST_SOLUTIONS => most,
-                None => {
-                    let unknown = &self.unknowns[which];
-                    return Ok(out_of_reach(unknown, factors[which], found.result));
+        let mut factors = vec![1.0; unknowns.len()];
+        let mut slopes = vec![1.0; unknowns.len()];
+        let mut tests = self.packings.len();
+        let stiffness = unknowns
+            .iter()
+            .position(|unknown| unknown.result != STRENGTH);
+        if let Some(which) = stiffness {
+            let (springs, solutions) = match self.springs(which)? {
+                Sprung::Springs(springs, solutions) => (springs, solutions),
+                Sprung::Unknown => return Ok(Beginning::Unknown),
+                Sprung::OutOfReach(problem, remedy) => {
+                    return Ok(Beginning::OutOfReach(problem, remedy));
                 }
             };
-            let change = (next / factors[which]).ln();
-            let change = match is_known {
-                true => change,
-                false => change.signum() * change.abs().max(LEAST_CHANGE),
-            };
-            factors[which] *= change.exp();
-            if !PLAUSIBLE.contains(&factors[which]) {
-                return Ok(Beginning::Unknown);
-            }
-            if is_known && (change.abs() < NEAR || next < most || points.len() == MOST_SOLUTIONS) {
-                break springs;
-            }
-        };
-        let Some(found) = self.equilibria(&factors, which)? else {
+            tests += solutions;
+            let target = unknowns[which].target;
+            factors[which] = springs.factor_for(target).unwrap_or(1.0);
+            slopes[which] = springs.slope(factors[which]);
+        }
+        let Some(found) = self.equilibria(&factors, stiffness)? else {
             return Ok(Beginning::Unknown);
         };
-        let mut slopes = vec![1.0; factors.len()];
-        slopes[which] = springs.slope(factors[which]);
-        factors[which] *= (target / found.result).powf(1.0 / slopes[which].max(LEAST_SLOPE));
-        for (unknown, factor) in self.unknowns.iter().zip(&mut factors) {
+        if let (Some(which), Some(result)) = (stiffness, found.result) {
+            let slope = slopes[which].max(LEAST_SLOPE);
+            factors[which] *= (unknowns[which].target / result).powf(1.0 / slope);
+        }
+        for (unknown, factor) in unknowns.iter().zip(&mut factors) {
             let is_strength =
                 unknown.result == STRENGTH && has_all_strengths(&self.scene, unknown)?;
             if is_strength && PLAUSIBLE.contains(&found.utilisation) {
@@ -141,13 +138,43 @@ impl Bench<'_> {
             factors,
             slopes,
             travel_m: found.travel_m,
-            tests: points.len() + self.packings.len(),
+            tests,
             wall_s: began.elapsed().as_secs_f64(),
         }))
     }
 
+    /// The parts of bonds and contacts in the stiffness of the first packing, and the number of
+    /// solutions that it took.
+    fn springs(&self, which: usize) -> Result<Sprung> {
+        let target = self.unknowns[which].target;
+        let mut factors = vec![1.0; self.unknowns.len()];
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        loop {
+            let found = self.equilibrium(&factors, 0, Some(which))?;
+            let Some(result) = found.and_then(|found| found.result) else {
+                return Ok(Sprung::Unknown);
+            };
+            points.push([factors[which], result]);
+            let springs = Springs::of(&points);
+            let most = MUCH_STIFFER * points.iter().map(|[factor, _]| *factor).fold(1.0, f64::max);
+            let next = match springs.factor_for(target) {
+                Some(factor) => factor.min(most),
+                None if points.len() < MOST_SOLUTIONS => most,
+                None => return Ok(out_of_reach(&self.unknowns[which], factors[which], result)),
+            };
+            if points.len() > 1 && (next < most || points.len() == MOST_SOLUTIONS) {
+                return Ok(Sprung::Springs(springs, points.len()));
+            }
+            let change = (next / factors[which]).ln();
+            factors[which] *= (change.signum() * change.abs().max(LEAST_CHANGE)).exp();
+            if !PLAUSIBLE.contains(&factors[which]) {
+                return Ok(Sprung::Unknown);
+            }
+        }
+    }
+
     /// Equilibria of all packings, and the mean of what they say. None: one has none.
-    fn equilibria(&self, factors: &[f64], which: usize) -> Result<Option<Elastic>> {
+    fn equilibria(&self, factors: &[f64], which: Option<usize>) -> Result<Option<Elastic>> {
         let mut sum: Option<Elastic> = None;
         let count = self.packings.len() as f64;
         for at in 0..self.packings.len() {
@@ -155,13 +182,13 @@ impl Bench<'_> {
                 return Ok(None);
             };
             let before = sum.take().unwrap_or(Elastic {
-                result: 0.0,
+                result: None,
                 travel_m: None,
                 utilisation: 0.0,
             });
             let further = |travel_m: f64| before.travel_m.map_or(travel_m, |far| far.max(travel_m));
             sum = Some(Elastic {
-                result: before.result + one.result / count,
+                result: (one.result).map(|one| before.result.unwrap_or(0.0) + one / count),
                 travel_m: one.travel_m.map(further),
                 utilisation: before.utilisation + one.utilisation / count,
             });
@@ -170,7 +197,12 @@ impl Bench<'_> {
     }
 
     /// The equilibria of packing `at`. None: there are none.
-    fn equilibrium(&self, factors: &[f64], at: usize, which: usize) -> Result<Option<Elastic>> {
+    fn equilibrium(
+        &self,
+        factors: &[f64],
+        at: usize,
+        which: Option<usize>,
+    ) -> Result<Option<Elastic>> {
         let (scene, mut plan, setup, _) = self.planned(factors, at, 1.0)?;
         let goes_on = |_: f64| !self.interrupted.load(Ordering::Relaxed);
         let Some(setup) = setup else {
@@ -182,10 +214,10 @@ impl Bench<'_> {
             // The tests themselves say more.
             Err(_) => return Ok(None),
         };
-        let result = found.figure(&self.unknowns[which].result);
+        let result = which.map(|which| found.figure(&self.unknowns[which].result));
         let stiffness_n_m = found.figure(STIFFNESS);
-        let (Some(result), Some(stiffness_n_m), Some(last)) =
-            (result, stiffness_n_m, found.rows.last())
+        let (Some(stiffness_n_m), Some(last), false) =
+            (stiffness_n_m, found.rows.last(), result == Some(None))
         else {
             return Ok(None);
         };
@@ -207,7 +239,7 @@ impl Bench<'_> {
         };
         let further_m = |wanted_n: f64| (wanted_n - last.load_n()) / stiffness_n_m;
         Ok(Some(Elastic {
-            result,
+            result: result.flatten(),
             travel_m: wanted_n.map(|wanted_n| last.travel_m + further_m(wanted_n)),
             utilisation,
         }))
@@ -257,7 +289,7 @@ impl Springs {
     }
 }
 
-fn out_of_reach(unknown: &Unknown, factor: f64, result: f64) -> Beginning {
+fn out_of_reach(unknown: &Unknown, factor: f64, result: f64) -> Sprung {
     let show = |value: f64| show_quantity(value, &unknown.unit);
     let number = &unknown.numbers[0];
     let problem = format!(
@@ -274,7 +306,7 @@ fn out_of_reach(unknown: &Unknown, factor: f64, result: f64) -> Beginning {
             "calibrate the modulus of the specimen itself: --modulus specimen; or take smaller spheres, or correct the target"
         }
     };
-    Beginning::OutOfReach(problem, remedy.to_owned())
+    Sprung::OutOfReach(problem, remedy.to_owned())
 }
 
 #[cfg(test)]
