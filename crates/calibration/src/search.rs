@@ -20,8 +20,8 @@ const FURTHEST_WITHIN_SCATTER: f64 = 0.05;
 const FEWEST_CHANGE: f64 = 0.1;
 /// Range of the size of slopes of results that are not proportional.
 const SIZES_OF_SLOPES: [f64; 2] = [0.1, 5.0];
-/// Largest change of the logarithm of the factors of such results: in the first step, whose slope is not known,
-/// and in others.
+/// Largest change of the logarithm of the factors of such results: in the first step, whose slope
+/// is not known, and in others.
 const CHANGES: [f64; 2] = [0.4, 1.0];
 /// A result that follows its number less than this does not depend on it.
 const FLAT: f64 = 0.05;
@@ -113,7 +113,7 @@ fn factor(
     let slope = slope(rounds, at);
     if slope.is_some_and(|slope| slope.abs() < FLAT || (unknown.is_proportional && slope < 0.0)) {
         let problem = format!("the {name} hardly follows {}", unknown.numbers[0].path);
-        let remedy = "something else determines it, such as contacts at pins or plates: calibrate the modulus of the specimen itself (--modulus specimen), take smaller spheres, or correct the target";
+        let remedy = "something else determines it, such as contacts at pins or plates: take smaller spheres, correct the target, or calibrate the modulus of the specimen itself (--modulus specimen)";
         return Err(Obstacle::Final(problem, remedy.to_owned()));
     }
     let new = proportional.unwrap_or_else(|| {

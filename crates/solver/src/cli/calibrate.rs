@@ -470,7 +470,9 @@ impl Job<'_> {
         case.bonds = bodies[0].bonds.len();
         case.mean_diameter_m = bodies[0].mean_diameter_m();
         case.spheres_across = smallest_extent_m(&bodies[0]) / case.mean_diameter_m;
+        let bar = self.options.progress_bar(&case.name);
         if case.start.is_none() && case.rounds.is_empty() {
+            bar.set_message("first numbers, without time steps");
             match bench.start()? {
                 Beginning::Unknown => {}
                 Beginning::Start(start) => case.start = Some(start),
@@ -485,7 +487,6 @@ impl Job<'_> {
         if let (Some(travel_m), Some(test)) = (travel_m, self.test) {
             bench.pace = pace(test, travel_m, case.mean_diameter_m);
         }
-        let bar = self.options.progress_bar(&case.name);
         let parts = Mutex::new(vec![0.0; count]);
         let tell = |packing: usize, fraction: f64| {
             if let Ok(mut parts) = parts.lock() {
