@@ -487,6 +487,20 @@ impl Job<'_> {
         if let (Some(travel_m), Some(test)) = (travel_m, self.test) {
             bench.pace = pace(test, travel_m, case.mean_diameter_m);
         }
+        self.do_tests(record, at, &bench, case, workers, &bar)
+    }
+
+    /// The rounds of a case, and its tests at twice the rate, `workers` at a time.
+    fn do_tests(
+        &self,
+        record: &mut Record,
+        at: usize,
+        bench: &Bench<'_>,
+        mut case: Case,
+        workers: usize,
+        bar: &ProgressBar,
+    ) -> Result<()> {
+        let count = bench.packings.len();
         let parts = Mutex::new(vec![0.0; count]);
         let tell = |packing: usize, fraction: f64| {
             if let Ok(mut parts) = parts.lock() {
@@ -518,7 +532,7 @@ impl Job<'_> {
             tested.map_err(|error| error.within(&names[packing]))
         };
         let usual = |factors: &[f64], packing: usize| test(factors, packing, 1.0);
-        let mut done = search(&unknowns, count, &mut case, workers, &usual, &save);
+        let mut done = search(bench.unknowns, count, &mut case, workers, &usual, &save);
         if let Err(error) = &done
             && error.kind == Kind::Unstable
         {
