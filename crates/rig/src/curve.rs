@@ -22,19 +22,15 @@ pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
     record.smoothed(WINDOW / lowest_frequency_hz)
 }
 
-/// The load of which the elastic part has 20 % to 60 %, N: that of a body with the wanted strength,
-/// if its own largest load reaches 60 % of that, or else its own.
-pub fn elastic_load_n(largest_n: f64, wanted_n: Option<f64>) -> f64 {
-    let reached = wanted_n.filter(|wanted_n| largest_n >= ELASTIC[1] * wanted_n);
-    reached.unwrap_or(largest_n)
-}
-
-/// The slope of the load over a displacement `way`, between 20 % and 60 % of a load, N, by least
-/// squares. None: too few rows.
-pub fn slope(rows: &[Row], elastic_n: f64, way: impl Fn(&Row) -> f64) -> Option<Slope> {
+/// The slope of the load over a displacement `way`, by least squares, between 20 % and 60 % of
+/// `wanted_n`, the load of a body with the wanted strength, if the largest load reaches 60 % of it,
+/// or else of the largest load. None: too few rows.
+pub fn slope(rows: &[Row], wanted_n: Option<f64>, way: impl Fn(&Row) -> f64) -> Option<Slope> {
     let (ways_m, loads_n): (Vec<f64>, Vec<f64>) =
         rows.iter().map(|row| (way(row), row.load_n())).unzip();
-    let line = elastic_line(&ways_m, &loads_n, elastic_n)?;
+    let largest_n = largest_n(rows)?;
+    let reached_n = wanted_n.filter(|wanted_n| largest_n >= ELASTIC[1] * wanted_n);
+    let line = elastic_line(&ways_m, &loads_n, reached_n.unwrap_or(largest_n))?;
     Some(Slope {
         stiffness_n_m: line.slope,
         start_m: line.zero(),
@@ -51,8 +47,7 @@ pub(super) fn elastic_range(rows: &[Row]) -> Option<&[Row]> {
 /// Travel at which the line fitted to the load over the travel has no load, m: play until
 /// everything touches. 0 without a line.
 pub(crate) fn play_m(rows: &[Row]) -> f64 {
-    let line = largest_n(rows).and_then(|largest| slope(rows, largest, |row| row.travel_m));
-    line.map_or(0.0, |slope| slope.start_m)
+    slope(rows, None, |row| row.travel_m).map_or(0.0, |slope| slope.start_m)
 }
 
 /// The largest load, N, by the rule for measured curves. None: no rows.
@@ -109,7 +104,7 @@ mod tests {
             let (ways_m, loads_n) = rows.iter().map(|row| (row.travel_m, row.force_n)).unzip();
             let curve = Curve::new(ways_m, loads_n, (1..=rows.len()).collect()).unwrap();
             let measured = Regions::of(&curve);
-            let simulated = slope(&rows, largest_n(&rows).unwrap(), |row| row.travel_m).unwrap();
+            let simulated = slope(&rows, None, |row| row.travel_m).unwrap();
             assert_eq!(simulated.stiffness_n_m, measured.stiffness_n_m);
             assert_eq!(simulated.start_m, measured.start_m);
             let largest_n = largest_n(&rows).unwrap();

@@ -4,7 +4,7 @@
 use dem_scene::{BondKind, Test};
 
 use super::confined::{self, POISSON_RATIO, RESIDUAL, RESIDUAL_FRICTION};
-use super::curve::{elastic_load_n, largest_n, peak, play_m, rows_of, slope};
+use super::curve::{largest_n, peak, play_m, rows_of, slope};
 use super::disc_stress::{self, ACROSS, ALONG};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
@@ -51,12 +51,11 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         ..
     } = *evidence;
     let rows = &rows_of(record, evidence.lowest_frequency_hz);
-    let largest = largest_n(rows);
-    let elastic_n = largest.map(|largest| elastic_load_n(largest, evidence.wanted_n));
-    let slope = |way: fn(&Row) -> f64| slope(rows, elastic_n?, way);
+    let slope = |way: fn(&Row) -> f64| slope(rows, evidence.wanted_n, way);
     let by_travel = slope(|row| row.travel_m);
     let measured = !setup.moving.is_empty();
     let of_body = slope(|row| row.deflection_m).filter(|_| measured);
+    let largest = largest_n(rows);
     let mut measured = Measured::of(
         test,
         setup,

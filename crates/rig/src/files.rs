@@ -12,7 +12,7 @@ use dem_results::folder::names;
 use dem_scene::{Bars, Test};
 
 use super::crack::{CrackPicture, crack_map};
-use super::curve::{largest_n, peak, play_m, rows_of, slope};
+use super::curve::{peak, play_m, rows_of, slope};
 use super::disc_stress::{self, slabs};
 use super::dynamic::{BarSignal, GaugeSignal, bar_signals, gauge_signals, stress_strain};
 use super::evaluate::{FAILURE_FORCE, measured_curve};
@@ -233,7 +233,7 @@ pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
         "crosshead travel",
         points(&|row| row.travel_m - play_m),
     )];
-    let of_body = largest_n(rows).and_then(|largest| slope(rows, largest, |row| row.deflection_m));
+    let of_body = slope(rows, None, |row| row.deflection_m);
     if let (Some(of_body), true) = (of_body, named(result, "specimen stiffness").is_some()) {
         let sign = of_body.stiffness_n_m.signum();
         let way = |row: &Row| sign * (row.deflection_m - of_body.start_m);

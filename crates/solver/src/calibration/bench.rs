@@ -6,9 +6,10 @@ use std::time::Instant;
 
 use dem_calibration::{Trial, Unknown};
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{Scene, scene_from_text, set_text};
+use dem_scene::{Scene, Test, scene_from_text, set_text};
 
 use super::choice::SceneText;
+use dem_laboratory::Specimen;
 use dem_laboratory::test_result::TestResult;
 use dem_plan::Plan;
 use dem_results::Summary;
@@ -70,10 +71,8 @@ impl Bench<'_> {
         let planned = self.planned(factors, at, faster)?;
         let (scene, plan, setup, lowest_hz) = planned;
         let specimen = setup.as_ref().map(|setup| setup.specimen);
-        let strength_pa = scene.test.as_ref().and_then(|test| test.strength_pa);
-        let wanted_n = specimen
-            .zip(strength_pa)
-            .map(|(specimen, strength_pa)| strength_pa / specimen.stress_pa(1.0));
+        let loaded = specimen.zip(scene.test.as_ref());
+        let wanted_n = loaded.and_then(|(specimen, test)| wanted_n(test, &specimen));
         let settings = RunSettings {
             folder: None,
             resume: None,
@@ -148,6 +147,12 @@ impl Bench<'_> {
             wall_s: 0.0,
         }
     }
+}
+
+/// Load under which a specimen has the strength that its test asks for, N.
+pub(super) fn wanted_n(test: &Test, specimen: &Specimen) -> Option<f64> {
+    test.strength_pa
+        .map(|strength_pa| strength_pa / specimen.stress_pa(1.0))
 }
 
 /// `--set` values of a scene with these factors on its numbers.

@@ -15,7 +15,7 @@ use dem_rig::elastic_test::elastic_test;
 use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, STRENGTH};
 use dem_scene::Test;
 
-use super::bench::Bench;
+use super::bench::{Bench, wanted_n};
 use super::choice::has_all_strengths;
 
 /// First factors beyond this range are left to the tests with steps, which say why.
@@ -44,10 +44,10 @@ pub(crate) enum Beginning {
 /// Part of the bonds whose stress in the whole body is above their strength when it fails, as found
 /// in calibrations: a bar breaks where it is bent the most, a compressed body bears on when
 /// many of its bonds have broken.
-fn failed_bonds(kind: Option<TestType>) -> f64 {
+fn failed_bonds(kind: TestType) -> f64 {
     match kind {
-        Some(TestType::FourPointBending | TestType::ThreePointBending) => 0.0005,
-        Some(TestType::Compression) => 0.05,
+        TestType::FourPointBending | TestType::ThreePointBending => 0.0005,
+        TestType::Compression => 0.05,
         _ => 0.015,
     }
 }
@@ -65,20 +65,10 @@ pub(crate) fn pace(test: &Test, travel_m: f64, mean_diameter_m: f64) -> Vec<Stri
     sets
 }
 
-/// What equilibria of one packing with several moduli say.
-enum Sprung {
-    /// The springs, and the number of solutions.
-    Springs(Springs, usize),
-    /// There is no equilibrium.
-    Unknown,
-    /// Problem and remedy.
-    OutOfReach(String, String),
-}
-
 /// What equilibria of all packings say in the mean.
 struct Elastic {
-    /// The result that stands for the stiffness, if it is to be met.
-    result: Option<f64>,
+    /// The result that stands for the stiffness.
+    result: f64,
     /// Travel at the wanted load, with the way until all touches, m; the largest of the packings.
     /// None: there is no strength to meet.
     travel_m: Option<f64>,
@@ -108,24 +98,20 @@ impl Bench<'_> {
             .iter()
             .position(|unknown| unknown.result != STRENGTH);
         if let Some(which) = stiffness {
-            let (springs, solutions) = match self.springs(which)? {
-                Sprung::Springs(springs, solutions) => (springs, solutions),
-                Sprung::Unknown => return Ok(Beginning::Unknown),
-                Sprung::OutOfReach(problem, remedy) => {
-                    return Ok(Beginning::OutOfReach(problem, remedy));
-                }
+            let (factor, slope, solutions) = match self.springs(which)? {
+                Ok(found) => found,
+                Err(ended) => return Ok(ended),
             };
+            (factors[which], slopes[which]) = (factor, slope);
             tests += solutions;
-            let target = unknowns[which].target;
-            factors[which] = springs.factor_for(target).unwrap_or(1.0);
-            slopes[which] = springs.slope(factors[which]);
         }
-        let Some(found) = self.equilibria(&factors, stiffness)? else {
+        let result = stiffness.map_or(STIFFNESS, |which| &unknowns[which].result);
+        let Some(found) = self.equilibria(&factors, result)? else {
             return Ok(Beginning::Unknown);
         };
-        if let (Some(which), Some(result)) = (stiffness, found.result) {
+        if let Some(which) = stiffness {
             let slope = slopes[which].max(LEAST_SLOPE);
-            factors[which] *= (unknowns[which].target / result).powf(1.0 / slope);
+            factors[which] *= (unknowns[which].target / found.result).powf(1.0 / slope);
         }
         for (unknown, factor) in unknowns.iter().zip(&mut factors) {
             let is_strength =
@@ -143,69 +129,61 @@ impl Bench<'_> {
         }))
     }
 
-    /// The parts of bonds and contacts in the stiffness of the first packing, and the number of
-    /// solutions that it took.
-    fn springs(&self, which: usize) -> Result<Sprung> {
-        let target = self.unknowns[which].target;
+    /// From the stiffness of the first packing: the factor with which it meets the target, the
+    /// slope there, and the number of solutions that it took.
+    fn springs(&self, which: usize) -> Result<std::result::Result<(f64, f64, usize), Beginning>> {
+        let unknown = &self.unknowns[which];
         let mut factors = vec![1.0; self.unknowns.len()];
         let mut points: Vec<[f64; 2]> = Vec::new();
         loop {
-            let found = self.equilibrium(&factors, 0, Some(which))?;
-            let Some(result) = found.and_then(|found| found.result) else {
-                return Ok(Sprung::Unknown);
+            let Some(found) = self.equilibrium(&factors, 0, &unknown.result)? else {
+                return Ok(Err(Beginning::Unknown));
             };
-            points.push([factors[which], result]);
+            points.push([factors[which], found.result]);
             let springs = Springs::of(&points);
+            let is_last = points.len() == MOST_SOLUTIONS;
             let most = MUCH_STIFFER * points.iter().map(|[factor, _]| *factor).fold(1.0, f64::max);
-            let next = match springs.factor_for(target) {
-                Some(factor) => factor.min(most),
-                None if points.len() < MOST_SOLUTIONS => most,
-                None => return Ok(out_of_reach(&self.unknowns[which], factors[which], result)),
+            let next = match springs.factor_for(unknown.target) {
+                Some(factor) if points.len() > 1 && (factor < most || is_last) => {
+                    return Ok(Ok((factor, springs.slope(factor), points.len())));
+                }
+                None if is_last => {
+                    return Ok(Err(out_of_reach(unknown, factors[which], found.result)));
+                }
+                factor => factor.map_or(most, |factor| factor.min(most)),
             };
-            if points.len() > 1 && (next < most || points.len() == MOST_SOLUTIONS) {
-                return Ok(Sprung::Springs(springs, points.len()));
-            }
             let change = (next / factors[which]).ln();
             factors[which] *= (change.signum() * change.abs().max(LEAST_CHANGE)).exp();
             if !PLAUSIBLE.contains(&factors[which]) {
-                return Ok(Sprung::Unknown);
+                return Ok(Err(Beginning::Unknown));
             }
         }
     }
 
     /// Equilibria of all packings, and the mean of what they say. None: one has none.
-    fn equilibria(&self, factors: &[f64], which: Option<usize>) -> Result<Option<Elastic>> {
-        let mut sum: Option<Elastic> = None;
-        let count = self.packings.len() as f64;
+    fn equilibria(&self, factors: &[f64], result: &str) -> Result<Option<Elastic>> {
+        let mut all = Vec::new();
         for at in 0..self.packings.len() {
-            let Some(one) = self.equilibrium(factors, at, which)? else {
-                return Ok(None);
-            };
-            let before = sum.take().unwrap_or(Elastic {
-                result: None,
-                travel_m: None,
-                utilisation: 0.0,
-            });
-            let further = |travel_m: f64| before.travel_m.map_or(travel_m, |far| far.max(travel_m));
-            sum = Some(Elastic {
-                result: (one.result).map(|one| before.result.unwrap_or(0.0) + one / count),
-                travel_m: one.travel_m.map(further),
-                utilisation: before.utilisation + one.utilisation / count,
-            });
+            match self.equilibrium(factors, at, result)? {
+                Some(one) => all.push(one),
+                None => return Ok(None),
+            }
         }
-        Ok(sum)
+        let mean = |of: fn(&Elastic) -> f64| -> f64 {
+            all.iter().map(|one| of(one) / all.len() as f64).sum()
+        };
+        Ok(Some(Elastic {
+            result: mean(|one| one.result),
+            travel_m: all.iter().filter_map(|one| one.travel_m).reduce(f64::max),
+            utilisation: mean(|one| one.utilisation),
+        }))
     }
 
     /// The equilibria of packing `at`. None: there are none.
-    fn equilibrium(
-        &self,
-        factors: &[f64],
-        at: usize,
-        which: Option<usize>,
-    ) -> Result<Option<Elastic>> {
+    fn equilibrium(&self, factors: &[f64], at: usize, result: &str) -> Result<Option<Elastic>> {
         let (scene, mut plan, setup, _) = self.planned(factors, at, 1.0)?;
         let goes_on = |_: f64| !self.interrupted.load(Ordering::Relaxed);
-        let Some(setup) = setup else {
+        let (Some(setup), Some(test)) = (setup, &scene.test) else {
             return Ok(None);
         };
         let found = match elastic_test(&mut plan.state, &scene, &setup, &goes_on) {
@@ -214,34 +192,23 @@ impl Bench<'_> {
             // The tests themselves say more.
             Err(_) => return Ok(None),
         };
-        let result = which.map(|which| found.figure(&self.unknowns[which].result));
-        let stiffness_n_m = found.figure(STIFFNESS);
-        let (Some(stiffness_n_m), Some(last), false) =
-            (stiffness_n_m, found.rows.last(), result == Some(None))
-        else {
+        let figures = [result, STIFFNESS].map(|name| found.figure(name));
+        let ([Some(result), Some(stiffness_n_m)], Some(last)) = (figures, found.rows.last()) else {
             return Ok(None);
         };
         let state = &plan.state;
         let mut utilisations: Vec<f64> = (0..state.bonds.len())
             .map(|at| bond_utilisation(state, at))
             .collect();
-        let kind = scene.test.as_ref().map(|test| test.kind);
-        let above = (failed_bonds(kind) * utilisations.len() as f64) as usize;
-        let above = above.min(utilisations.len().saturating_sub(1));
-        let strength_pa = scene.test.as_ref().and_then(|test| test.strength_pa);
-        let wanted_n = strength_pa.map(|strength_pa| strength_pa / setup.specimen.stress_pa(1.0));
-        let utilisation = match (wanted_n, utilisations.is_empty()) {
-            (Some(wanted_n), false) => {
-                let (_, one, _) = utilisations.select_nth_unstable_by(above, |a, b| b.total_cmp(a));
-                *one * wanted_n / last.load_n()
-            }
-            _ => 0.0,
-        };
+        utilisations.sort_by(|a, b| b.total_cmp(a));
+        let above = (failed_bonds(test.kind) * utilisations.len() as f64) as usize;
+        let wanted_n = wanted_n(test, &setup.specimen);
+        let at_wanted = wanted_n.zip(utilisations.get(above));
         let further_m = |wanted_n: f64| (wanted_n - last.load_n()) / stiffness_n_m;
         Ok(Some(Elastic {
-            result: result.flatten(),
+            result,
             travel_m: wanted_n.map(|wanted_n| last.travel_m + further_m(wanted_n)),
-            utilisation,
+            utilisation: at_wanted.map_or(0.0, |(wanted_n, one)| one * wanted_n / last.load_n()),
         }))
     }
 }
@@ -289,7 +256,7 @@ impl Springs {
     }
 }
 
-fn out_of_reach(unknown: &Unknown, factor: f64, result: f64) -> Sprung {
+fn out_of_reach(unknown: &Unknown, factor: f64, result: f64) -> Beginning {
     let show = |value: f64| show_quantity(value, &unknown.unit);
     let number = &unknown.numbers[0];
     let problem = format!(
@@ -306,7 +273,7 @@ fn out_of_reach(unknown: &Unknown, factor: f64, result: f64) -> Sprung {
             "calibrate the modulus of the specimen itself: --modulus specimen; or take smaller spheres, or correct the target"
         }
     };
-    Sprung::OutOfReach(problem, remedy.to_owned())
+    Beginning::OutOfReach(problem, remedy.to_owned())
 }
 
 #[cfg(test)]

@@ -244,9 +244,9 @@ fn arranged(
         return Ok((scene, None, None));
     };
     let test = TestSettings {
-        wanted_n: None,
         lowest_frequency_hz: body.lowest_frequency_hz,
         at_twice_the_rate: None,
+        wanted_n: None,
     };
     let checked = (scene.test.as_ref()).is_some_and(|test| test.rate_check);
     let twice = if checked && scene.run.integrator == Integrator::Leapfrog {
