@@ -2,6 +2,7 @@
 //! of bonds and contacts, rotation, shapes of walls, and bodies made of spheres.
 
 pub mod bond;
+pub mod breakage;
 pub mod chebyshev;
 pub mod contact;
 pub mod dual;
