@@ -136,6 +136,11 @@ dimensions! {
         "mJ/kg": 1e-3, "J/kg": 1.0, "kJ/kg": 1e3, "kWh/t": 3600.0,
     ]
 
+    /// Mass over energy, kg/J.
+    MASS_PER_ENERGY: "mass per energy" in "kg/J", as "0.9 t/kWh" [
+        "kg/J": 1.0, "kg/kJ": 1e-3, "t/kWh": 1.0 / 3600.0,
+    ]
+
     /// Energy over area, J/m2.
     ENERGY_PER_AREA: "energy per area" in "J/m2", as "50 J/m2" [
         "mJ/m2": 1e-3, "J/m2": 1.0, "kJ/m2": 1e3, "N/m": 1.0,
