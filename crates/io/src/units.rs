@@ -45,7 +45,7 @@ macro_rules! dimensions {
         )+
 
         /// All dimensions.
-        pub const DIMENSIONS: [Dimension; 22] = [$($dimension),+];
+        pub const DIMENSIONS: [Dimension; 23] = [$($dimension),+];
     };
 }
 
