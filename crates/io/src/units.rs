@@ -45,7 +45,7 @@ macro_rules! dimensions {
         )+
 
         /// All dimensions.
-        pub const DIMENSIONS: [Dimension; 23] = [$($dimension),+];
+        pub const DIMENSIONS: [Dimension; 25] = [$($dimension),+];
     };
 }
 
@@ -159,6 +159,16 @@ dimensions! {
     /// Rate, 1/s.
     RATE: "rate" in "1/s", as "1e-5 1/s" [
         "1/s": 1.0, "/s": 1.0, "%/s": 1e-2,
+    ]
+
+    /// Power, W.
+    POWER: "power" in "W", as "10 W" [
+        "mW": 1e-3, "W": 1.0, "kW": 1e3, "MW": 1e6,
+    ]
+
+    /// Frequency, Hz.
+    FREQUENCY: "frequency" in "Hz", as "4 Hz" [
+        "Hz": 1.0, "1/s": 1.0, "/s": 1.0, "1/min": 1.0 / 60.0, "rpm": 1.0 / 60.0,
     ]
 
     /// Force over velocity, N s/m.

@@ -39,6 +39,14 @@ pub(super) struct Forces {
 pub(super) fn formula(factor: &Factor) -> String {
     match factor {
         Factor::One => "1.0".to_owned(),
+        Factor::Oscillation {
+            frequency_hz,
+            phase_rad,
+        } => format!(
+            "(sin({:e}*time+({phase_rad:e}))-({:e}))",
+            std::f64::consts::TAU * frequency_hz,
+            phase_rad.sin()
+        ),
         Factor::Ramp { until_s } => {
             format!("((time<{until_s:e})*time/{until_s:e}+(time>={until_s:e}))")
         }

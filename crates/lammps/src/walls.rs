@@ -208,7 +208,7 @@ fn moves(scene: &Scene, part: &str, motion: &WallMotion) -> Result<Option<[Strin
                     2.0 * until_s,
                     0.5 * until_s
                 ),
-                Factor::Table(_) => {
+                Factor::Table(_) | Factor::Oscillation { .. } => {
                     return Err(refused(
                         scene,
                         part,

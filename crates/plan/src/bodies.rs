@@ -94,7 +94,7 @@ pub(super) fn place_body(
 /// Whether a body always stays a rigid clump, so that its bonds are unused.
 pub(super) fn stays_rigid(scene: &Scene, name: &str) -> bool {
     let start = scene.bodies.get(name).map(|entry| entry.start_as);
-    let becomes_cluster = |rule: &Replacement| rule.daughters.is_none();
+    let becomes_cluster = |rule: &Replacement| !rule.breaks_whole();
     matches!(start, Some(StartAs::Clump(_)))
         && !scene.replacement.get(name).is_some_and(becomes_cluster)
 }

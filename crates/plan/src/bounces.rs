@@ -31,7 +31,7 @@ pub(super) fn notes(scene: &Scene, state: &State) -> Vec<String> {
     let replaced = state.clumps.templates.iter();
     let replaced = replaced.filter(|template| {
         let rule = scene.replacement.get(&template.body);
-        !template.bonds.is_empty() && rule.is_some_and(|rule| rule.daughters.is_none())
+        !template.bonds.is_empty() && rule.is_some_and(|rule| !rule.breaks_whole())
     });
     let mut notes: Vec<String> = Vec::new();
     for template in replaced {

@@ -86,6 +86,8 @@ pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
 /// Radius of the smallest daughter of a daughter that is replaced in turn, m: volumes of daughters
 /// add up to that of what they replace.
 fn smallest_daughter_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
+    let by_law = scene.replacement.values().filter_map(|rule| rule.breakage);
+    let by_law = by_law.map(|breakage| 0.5 * breakage.smallest_size_m);
     let rules = scene.replacement.values();
     let daughters = rules.filter_map(|rule| rule.daughters.as_ref());
     let radii = daughters.flat_map(|daughters| {
@@ -97,7 +99,7 @@ fn smallest_daughter_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
             Some(smallest_m * daughters.smallest_size_m? / (2.0 * volume.cbrt()))
         })
     });
-    radii.fold(f64::INFINITY, f64::min)
+    radii.chain(by_law).fold(f64::INFINITY, f64::min)
 }
 
 /// The spheres of a template that something in the scene can touch.
@@ -245,7 +247,7 @@ pub(super) fn need_pairs(
 pub(super) fn refuse_unbreakable(scene: &Scene, templates: &[Arc<Template>]) -> Result<()> {
     for template in templates {
         let rule = scene.replacement.get(&template.body);
-        let becomes_cluster = rule.is_some_and(|rule| rule.daughters.is_none());
+        let becomes_cluster = rule.is_some_and(|rule| !rule.breaks_whole());
         if becomes_cluster && template.bonds.is_empty() {
             return Err(Diagnostic::input(
                 format!("{}: [replacement.{}]", scene.source, template.body),

@@ -7,12 +7,13 @@ use std::sync::Arc;
 use dem_io::body::About;
 use dem_io::units::show_length;
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{CountedEnergy, Daughters, Material, Scene, WholeMass};
+use dem_scene::{Breakage, CountedEnergy, Daughters, Material, Replacement, Scene, WholeMass};
 use nalgebra::Vector3;
 
 use super::clumps::template;
 use dem_engine::state::clumps::{Template, sphere_volume_m3};
-use dem_engine::state::rules::{DaughterRule, SizeClass};
+use dem_engine::state::rules::{ByLaw, DaughterRule, SizeClass};
+use dem_physics::breakage::BreakageLaw;
 use dem_physics::shape::packing_fit::fit;
 
 /// The scene with the mass of each parent for its daughters, whose bodies in `read` become as large
@@ -21,11 +22,14 @@ use dem_physics::shape::packing_fit::fit;
 pub(super) fn fitted(mut scene: Scene, read: &mut BTreeMap<String, Body>) -> Result<Scene> {
     let rules = scene.replacement.clone();
     for (parent, rule) in &rules {
-        let (Some(daughters), Some(body)) = (&rule.daughters, read.get(parent)) else {
+        let Some(body) = read.get(parent).filter(|_| rule.breaks_whole()) else {
             continue;
         };
         let parent = template(&scene, parent, body)?;
-        refuse_too_small(&scene, &parent, daughters)?;
+        refuse_too_small(&scene, &parent, rule)?;
+        let Some(daughters) = &rule.daughters else {
+            continue;
+        };
         for class in &daughters.classes {
             let Some(body) = read.get_mut(&class.body) else {
                 continue;
@@ -68,16 +72,23 @@ fn refuse_same_place(scene: &Scene, parent: &Template, name: &str, body: &Body) 
     }
 }
 
-fn refuse_too_small(scene: &Scene, parent: &Template, daughters: &Daughters) -> Result<()> {
-    match daughters.smallest_size_m {
+fn refuse_too_small(scene: &Scene, parent: &Template, rule: &Replacement) -> Result<()> {
+    let (key, smallest_m) = match (&rule.daughters, &rule.breakage) {
+        (Some(daughters), _) => ("daughters", daughters.smallest_size_m),
+        (None, breakage) => (
+            "breakage",
+            breakage.map(|breakage| breakage.smallest_size_m),
+        ),
+    };
+    match smallest_m {
         Some(smallest_m) if parent.size_m() < smallest_m => Err(Diagnostic::input(
-            format!("{}: [replacement.{}.daughters]", scene.source, parent.body),
+            format!("{}: [replacement.{}.{key}]", scene.source, parent.body),
             format!(
                 "smallest_size is {}, and the body itself, {}, is smaller",
                 show_length(smallest_m),
                 show_length(parent.size_m())
             ),
-            "write the size of the smallest daughter that is replaced in turn",
+            "write the size of the smallest daughter that breaks in turn",
         )),
         _ => Ok(()),
     }
@@ -124,7 +135,13 @@ pub(super) fn daughter_rules(
     templates: &[Arc<Template>],
 ) -> Vec<Option<DaughterRule>> {
     let rule = |parent: &Arc<Template>| {
-        let daughters = scene.replacement.get(&parent.body)?.daughters.as_ref()?;
+        let rule = scene.replacement.get(&parent.body)?;
+        if let Some(breakage) = &rule.breakage {
+            let material = &scene.bodies.get(&parent.body)?.material;
+            let law = scene.materials.get(material)?.breakage?;
+            return Some(rule_of_law(law, breakage, parent));
+        }
+        let daughters = rule.daughters.as_ref()?;
         let class = |class: &dem_scene::SizeClass| {
             let template = templates.iter().position(|t| t.body == class.body)?;
             Some(SizeClass {
@@ -136,6 +153,8 @@ pub(super) fn daughter_rules(
         let classes: Vec<SizeClass> = daughters.classes.iter().filter_map(class).collect();
         let smallest_radius_m = smallest_radius_m(daughters, &classes, templates);
         Some(DaughterRule {
+            by_law: None,
+            needed_j_kg: classes.first()?.from_j_kg,
             sums_impacts: daughters.energy == CountedEnergy::AllImpacts,
             weibull_modulus: daughters.weibull_modulus,
             smallest_size_m: daughters.smallest_size_m.unwrap_or(f64::INFINITY),
@@ -145,6 +164,23 @@ pub(super) fn daughter_rules(
         })
     };
     templates.iter().map(rule).collect()
+}
+
+/// The rule of particles that break by the law of their material.
+fn rule_of_law(law: BreakageLaw, breakage: &Breakage, parent: &Template) -> DaughterRule {
+    DaughterRule {
+        classes: Vec::new(),
+        by_law: Some(ByLaw {
+            law,
+            damage_exponent: breakage.damage_exponent,
+        }),
+        needed_j_kg: law.median_energy_j_kg(parent.size_m()),
+        sums_impacts: false,
+        weibull_modulus: None,
+        smallest_size_m: breakage.smallest_size_m,
+        limit: breakage.limit,
+        smallest_radius_m: 0.5 * breakage.smallest_size_m,
+    }
 }
 
 /// Radius of the smallest sphere that can come: of the body's own loose daughters, or of those of

@@ -161,6 +161,7 @@ pub fn plan(
     state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
     state.population.by_daughters = vec![0; templates.len()];
+    state.population.fines_kg = vec![0.0; templates.len()];
     state.population.outlets = vec![OutletTotals::default(); state.model.rules.outlets.len()];
     state.model.templates.clone_from(&templates);
     state.clumps.templates = templates;

@@ -1,7 +1,7 @@
 //! The time step of a run: the exact limit, the choice, and common estimates for comparison.
 
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Factor, IMPACT_ACCURACY, InitialOverlap, SAFETY, Scene, WallMotion};
+use dem_scene::{IMPACT_ACCURACY, InitialOverlap, SAFETY, Scene, WallMotion};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -460,28 +460,12 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
             velocity_m_s,
             spin_rad_s,
             factor,
-        } => {
-            let largest = match factor {
-                Factor::One | Factor::Ramp { .. } => 1.0,
-                Factor::Table(points) => points.iter().map(|p| p[1].abs()).fold(0.0, f64::max),
-            };
-            largest * speed(velocity_m_s, spin_rad_s)
-        }
+        } => factor.largest() * speed(velocity_m_s, spin_rad_s),
         WallMotion::Displacement {
             displacement_m,
             angular_displacement_rad: turn_rad,
             factor,
-        } => {
-            let steepest_1_s = match factor {
-                Factor::One => 0.0,
-                Factor::Ramp { until_s } => 1.0 / until_s,
-                Factor::Table(points) => points
-                    .windows(2)
-                    .map(|w| ((w[1][1] - w[0][1]) / (w[1][0] - w[0][0])).abs())
-                    .fold(0.0, f64::max),
-            };
-            steepest_1_s * speed(displacement_m, turn_rad)
-        }
+        } => factor.steepest_1_s() * speed(displacement_m, turn_rad),
         WallMotion::Servo {
             max_velocity_m_s: largest_velocity_m_s,
             ..

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use dem_io::body::About;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
-use dem_scene::Scene;
+use dem_scene::{Replacement, Scene};
 
 use dem_engine::state::State;
 use dem_engine::state::clumps::{Template, sphere_volume_m3};
@@ -24,7 +24,7 @@ pub(super) fn trigger(
     number: impl Fn(&String) -> Option<usize>,
 ) -> Option<Trigger> {
     let rule = scene.replacement.get(&template.body)?;
-    if rule.daughters.is_some() {
+    if rule.breaks_whole() {
         return None;
     }
     let when = &rule.when;
@@ -133,7 +133,7 @@ pub(super) fn replacement_doubts(scene: &Scene, state: &State) -> Vec<String> {
         let by_daughters = scene
             .replacement
             .get(body)
-            .is_some_and(|rule| rule.daughters.is_some());
+            .is_some_and(Replacement::breaks_whole);
         if by_daughters && state.contacts.is_none() {
             doubts.push(format!(
                 "replacement of '{body}': nothing can touch it, so it takes in no energy"

@@ -61,7 +61,7 @@ fn moves(support: &Support) -> bool {
 fn unfinished_at(factor: &Factor, at_s: f64) -> Option<(f64, f64)> {
     let is_late = |full_s: f64| full_s > (1.0 + ROUNDING) * at_s;
     match factor {
-        Factor::One => None,
+        Factor::One | Factor::Oscillation { .. } => None,
         Factor::Ramp { until_s } => is_late(*until_s).then(|| (at_s / until_s, *until_s)),
         Factor::Table(points) => {
             let rises = points.windows(2).all(|pair| pair[1][1] >= pair[0][1]);

@@ -12,6 +12,7 @@ pub(super) fn last_change_s(state: &State) -> f64 {
         Factor::One => 0.0,
         Factor::Ramp { until_s } => *until_s,
         Factor::Table(points) => points.last().map_or(0.0, |[time_s, _]| *time_s),
+        Factor::Oscillation { .. } => f64::INFINITY,
     };
     let of_walls = state.walls.iter().map(|wall| match &wall.model.motion {
         WallMotion::Fixed => 0.0,

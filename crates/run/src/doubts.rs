@@ -11,6 +11,7 @@ use dem_scene::{Scene, StartAs};
 
 use self::still_flying::{Flying, still_flying};
 use super::monitors::{Extreme, Monitors};
+use super::taken_in::needed_j_kg;
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
 use dem_engine::check::validity::{overlap_warning, plastic_strain_warning, strain_warning};
 use dem_engine::state::State;
@@ -60,10 +61,10 @@ impl Monitors {
             if self.replaced.contains(name) || !starts_rigid || !was_there {
                 continue;
             }
-            if let Some(class) = rule.daughters.as_ref().and_then(|of| of.classes.first()) {
+            if let Some(needed_j_kg) = needed_j_kg(state, name) {
                 warnings.push(format!(
                     "no particle of '{name}' was replaced by daughters: none took in {} J/kg{}{}",
-                    significant(class.from_j_kg, 4),
+                    significant(needed_j_kg, 4),
                     discharged_before(state, name),
                     self.taken.instead_of_daughters(name)
                 ));
@@ -321,7 +322,7 @@ fn unused_rules(state: &State) -> Vec<String> {
     for ((template, rule), done) in made.zip(&state.population.by_daughters) {
         if rule.as_ref().is_some_and(|rule| *done >= rule.limit) {
             warnings.push(format!(
-                "daughters replaced no more particles of '{}' after the first {done}, the limit in replacement.{0}.daughters: the others stayed whole",
+                "daughters replaced no more particles of '{}' after the first {done}, the limit in replacement.{0}: the others stayed whole",
                 template.body
             ));
         }

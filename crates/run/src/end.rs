@@ -198,7 +198,7 @@ impl Run<'_> {
             }),
             population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
-            taken_in: progress.monitors.taken.summary(scene),
+            taken_in: progress.monitors.taken.summary(state),
             sleep: state.sleep.as_ref().map(sleep_summary),
             steps: state.steps,
             time_step_s: state.time_step_s,

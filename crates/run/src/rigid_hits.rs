@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use dem_io::units::significant;
-use dem_scene::Scene;
+use dem_scene::{Replacement, Scene};
 use serde::{Deserialize, Serialize};
 
 use dem_engine::state::bodies::PlacedBody;
@@ -112,7 +112,7 @@ impl RigidHits {
         // Where daughters replace a body, energies decide on it and not its bonds.
         let by_energy = |name: &String| {
             let rule = scene.replacement.get(name);
-            rule.is_some_and(|rule| rule.daughters.is_some())
+            rule.is_some_and(Replacement::breaks_whole)
         };
         let of_bonds = self.of_body.iter().filter(|(name, _)| !by_energy(name));
         let mut warnings: Vec<String> = of_bonds

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use dem_io::units::significant;
-use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use dem_engine::state::State;
@@ -51,16 +50,14 @@ impl Taken {
     }
 
     /// For the summary, by body.
-    pub(super) fn summary(&self, scene: &Scene) -> BTreeMap<String, TakenIn> {
+    pub(super) fn summary(&self, state: &State) -> BTreeMap<String, TakenIn> {
         let both = self
             .daughters_j_kg
             .iter()
             .filter_map(|(name, largest_j_kg)| {
-                let daughters = scene.replacement.get(name)?.daughters.as_ref()?;
-                let needed_j_kg = daughters.classes.first()?.from_j_kg;
                 let taken = TakenIn {
                     largest_j_kg: *largest_j_kg,
-                    needed_j_kg,
+                    needed_j_kg: needed_j_kg(state, name)?,
                 };
                 Some((name.clone(), taken))
             });
@@ -85,6 +82,15 @@ impl Taken {
             )
         })
     }
+}
+
+/// Least energy over mass that replaces a particle of a body by daughters, or its median, J/kg.
+/// None: daughters never replace it.
+pub(super) fn needed_j_kg(state: &State, body: &str) -> Option<f64> {
+    let templates = state.clumps.templates.iter();
+    let mut rules = templates.zip(&state.model.rules.daughters);
+    let (_, rule) = rules.find(|(template, _)| template.body == body)?;
+    rule.as_ref().map(|rule| rule.needed_j_kg)
 }
 
 fn note(of_body: &mut BTreeMap<String, f64>, body: &str, value: f64) {

@@ -4,6 +4,7 @@
 mod again;
 mod books;
 mod bounce;
+mod breakage;
 mod carried;
 mod daughters;
 mod ids;

@@ -105,6 +105,9 @@ pub(super) static ZONE: Conflicts = Conflicts { of: "bodies.*", with: "", rows: 
     Conflict("", &["bonded_within"], &["replacement.*.daughters"],
         "{} cannot be combined with [{with}]: what a particle takes in from a rigid part is not counted",
         "remove one of the two"),
+    Conflict("", &["bonded_within"], &["replacement.*.breakage"],
+        "{} cannot be combined with [{with}]: what a particle takes in from a rigid part is not counted",
+        "remove one of the two"),
 ] };
 
 const HAS_NO_MOMENTS: &str = "{} has a strength of a moment, and the model \"pin\" has no moments";

@@ -78,15 +78,6 @@ pub(super) fn read(
     bodies: &BTreeMap<String, BodyEntry>,
 ) -> Result<Daughters> {
     let table = Table::of(field, &DAUGHTERS)?;
-    if let Some(relaxation) = root.find(&["relaxation", "enabled"])
-        && !relaxation.boolean()?
-    {
-        let problem = format!(
-            "is false, but {} makes daughters that overlap: without relaxation they fly apart",
-            field.path
-        );
-        return Err(relaxation.fault(problem, "remove it"));
-    }
     let mut classes: Vec<SizeClass> = Vec::new();
     for item in table.need("classes")?.items()? {
         let class = Table::of(&item, &SIZE_CLASS)?;

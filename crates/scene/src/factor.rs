@@ -22,6 +22,37 @@ pub enum Factor {
     /// `table = [[time, factor], ...]`: linear between the points, constant outside them. Times
     /// increase.
     Table(Vec<[f64; 2]>),
+    /// `frequency` and `phase` of a wall: sin(2 pi f t + phase) - sin(phase).
+    Oscillation {
+        /// f, Hz.
+        frequency_hz: f64,
+        /// rad.
+        phase_rad: f64,
+    },
+}
+
+impl Factor {
+    /// Its largest magnitude at any time.
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::One | Self::Ramp { .. } => 1.0,
+            Self::Table(points) => points.iter().fold(0.0, |most, [_, f]| most.max(f.abs())),
+            Self::Oscillation { phase_rad, .. } => 1.0 + phase_rad.sin().abs(),
+        }
+    }
+
+    /// Its largest change over time, 1/s.
+    pub fn steepest_1_s(&self) -> f64 {
+        match self {
+            Self::One => 0.0,
+            Self::Ramp { until_s } => 1.0 / until_s,
+            Self::Table(points) => points
+                .windows(2)
+                .map(|w| ((w[1][1] - w[0][1]) / (w[1][0] - w[0][0])).abs())
+                .fold(0.0, f64::max),
+            Self::Oscillation { frequency_hz, .. } => std::f64::consts::TAU * frequency_hz,
+        }
+    }
 }
 
 pub(super) const RAMP: Key = Key::quantity(
@@ -79,6 +110,7 @@ pub(super) fn end(table: &Table<'_>, factor: &Factor) -> Result<Option<f64>> {
         Factor::One => return Ok(Some(end_s)),
         Factor::Ramp { until_s } => (*until_s, "the ramp"),
         Factor::Table(points) => (points.last().map_or(0.0, |row| row[0]), "the table"),
+        Factor::Oscillation { .. } => return Ok(Some(end_s)),
     };
     if end_s < last_s {
         let limit = format!("at least {last_s} s, the end of {which}");
@@ -94,7 +126,7 @@ pub(super) fn factor_from_zero(table: &Table<'_>, moved: &Field<'_>) -> Result<F
     let first = match &factor {
         Factor::Ramp { .. } => Some([0.0, 0.0]),
         Factor::Table(points) => points.first().copied(),
-        Factor::One => None,
+        Factor::One | Factor::Oscillation { .. } => None,
     };
     match (first, table.get("table")) {
         (None, _) => {
@@ -138,6 +170,13 @@ pub(super) fn list(factor: &Factor, listing: &mut Listing) {
             };
             let shown: Vec<String> = points.iter().take(LISTED).map(row).collect();
             listing.some("table", &shown, points.len());
+        }
+        Factor::Oscillation {
+            frequency_hz,
+            phase_rad,
+        } => {
+            listing.value("frequency", frequency_hz);
+            listing.value("phase", phase_rad);
         }
     }
 }

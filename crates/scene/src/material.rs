@@ -2,12 +2,14 @@
 
 use std::ops::Bound::{Excluded, Included};
 
+use super::breakage;
 use super::field::Field;
 use super::listing::Listing;
 use super::schema::{Key, table_schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{DENSITY, STRESS};
+use dem_physics::breakage::BreakageLaw;
 
 /// Properties of the material of particles and walls.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,10 +24,18 @@ pub struct Material {
     pub poisson_ratio: f64,
     /// `rigid`: does not deform; only for walls, and without the values above. False unless given.
     pub rigid: bool,
+    /// `breakage`: how its particles break by energy. None: no law.
+    pub breakage: Option<BreakageLaw>,
 }
 
 /// Keys of a deformable material.
-const OF_ELASTIC: [&str; 4] = ["density", "young_modulus", "shear_modulus", "poisson_ratio"];
+const OF_ELASTIC: [&str; 5] = [
+    "density",
+    "young_modulus",
+    "shear_modulus",
+    "poisson_ratio",
+    "breakage",
+];
 
 table_schema! {
     /// Material of particles and walls.
@@ -42,6 +52,8 @@ table_schema! {
     poisson_ratio().or(0.3);
     /// The material does not deform; for walls only, and instead of all other keys.
     flag("rigid", false);
+    /// How particles break by the energy that they take in, for `[replacement.NAME.breakage]`.
+    table("breakage", &breakage::LAW).otherwise("no law");
 }
 
 impl Key {
@@ -80,6 +92,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<Material> {
         young_modulus_pa,
         poisson_ratio,
         rigid,
+        breakage: table.read_by("breakage", |field| breakage::law(&field))?,
     })
 }
 
@@ -90,4 +103,9 @@ pub(super) fn list(material: &Material, listing: &mut Listing) {
     listing.value("density", &material.density_kg_m3);
     listing.value("young_modulus", &material.young_modulus_pa);
     listing.value("poisson_ratio", &material.poisson_ratio);
+    if let Some(law) = &material.breakage {
+        listing.table("breakage", &breakage::LAW, |listing| {
+            breakage::list_law(law, listing);
+        });
+    }
 }

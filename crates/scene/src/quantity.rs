@@ -3,7 +3,7 @@
 use super::targets::Subject;
 use dem_io::units::{
     ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, DENSITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER,
-    RATE, TIME, TORQUE, VELOCITY,
+    POWER, RATE, TIME, TORQUE, VELOCITY,
 };
 
 /// A quantity that can be measured. For a group, positions and velocities are those of its centre
@@ -185,6 +185,9 @@ pub static QUANTITIES: &[Quantity] = &[
         &["torque_x", "torque_y", "torque_z"],
         &TORQUE,
     ),
+    // Of the wall on particles since the start, and its mean over the time.
+    of(&[Subject::Wall], &["work"], &ENERGY),
+    of(&[Subject::Wall], &["power"], &POWER),
     of_fragments(&["count"], &NUMBER),
     // Mass of the heaviest fragment over that of all.
     of_fragments(&["mass_fraction_of_largest"], &NUMBER),

@@ -57,7 +57,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let regions = each(&root, "regions", |field| region::read(field, folder))?;
     let bodies = body::read_all(&root, &materials, &bonds, &regions, folder)?;
     let contacts = contact::read_all(&root, &materials)?;
-    let replacement = replacement::read_all(&root, &bodies, &regions)?;
+    let replacement = replacement::read_all(&root, &bodies, &materials, &regions)?;
     let inlets = inlet::read_all(&root, &bodies, &regions, &replacement)?;
     let outlets = each(&root, "outlets", |field| {
         outlet::read(field, &regions, &inlets)

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::body::{BodyEntry, BodySource};
+use super::breakage::{self, BREAKAGE, Breakage};
 use super::clump::{ClumpMass, StartAs};
 use super::daughters::{self, DAUGHTERS, Daughters};
 use super::field::Field;
 use super::listing::Listing;
+use super::material::Material;
 use super::plain_table::{keyed_struct, plain_table};
 use super::region::Region;
 use super::schema::{Kind, words_of};
@@ -24,15 +26,17 @@ keyed_struct! {
     REPLACEMENT = "[replacement.NAME]";
     /// Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster,
     /// and when the cluster becomes rigid again; or the `daughters` that replace a clump or a
-    /// single sphere.
+    /// single sphere, of given sizes or by a law of `breakage`.
     #[derive(Debug, Clone, Default, PartialEq)]
     pub struct Replacement {
-        /// Conditions for replacement; at least one. Not with `daughters`.
+        /// Conditions for replacement; at least one. Not with `daughters` or `breakage`.
         when: When = table("when", &WHEN)
             .sometimes_required("{ enters = \"NAME\" }, a name in [regions]");
         /// Pieces that replace the clump or sphere once it has taken in enough energy.
         daughters: Option<Daughters> = table("daughters", &DAUGHTERS)
             .otherwise("its own bonded cluster replaces it");
+        /// Loose spheres that replace the clump or sphere by the breakage law of its material.
+        breakage: Option<Breakage> = table("breakage", &BREAKAGE).otherwise("no law");
         /// `any` or `all` of the conditions in `when` must hold.
         requires_all: bool = new("require", Kind::Word(|| words_of(&REQUIRE))).or_word("any");
         /// Conditions for a fragment to become rigid again; all must hold.
@@ -101,18 +105,36 @@ plain_table! {
 pub(super) fn read_all(
     root: &Table<'_>,
     bodies: &BTreeMap<String, BodyEntry>,
+    materials: &BTreeMap<String, Material>,
     regions: &BTreeMap<String, Region>,
 ) -> Result<BTreeMap<String, Replacement>> {
     let mut replacements = BTreeMap::new();
     for (name, field) in root.named("replacement")? {
         let table = Table::of(&field, &REPLACEMENT)?;
-        let replacement = match table.get("daughters") {
-            Some(given) => {
+        let replacement = match (table.get("daughters"), table.get("breakage")) {
+            (Some(_), Some(given)) => {
+                let remedy = "remove one of them: the law makes daughters of its own";
+                return Err(given.fault("cannot be combined with daughters", remedy));
+            }
+            (Some(given), None) => {
+                refuse_unrelaxed(root, &given)?;
+                refuse_conditions(&table, "daughters")?;
                 let daughters = daughters::read(&given, &name, root, bodies)?;
                 refuse_others_daughters(&given, &daughters, &replacements)?;
-                with_daughters(&table, daughters)?
+                Replacement {
+                    daughters: Some(daughters),
+                    ..Replacement::default()
+                }
             }
-            None => read(&table, root, bodies, regions)?,
+            (None, Some(given)) => {
+                refuse_unrelaxed(root, &given)?;
+                refuse_conditions(&table, "breakage")?;
+                Replacement {
+                    breakage: Some(breakage::read(&given, &name, bodies, materials)?),
+                    ..Replacement::default()
+                }
+            }
+            (None, None) => read(&table, root, bodies, regions)?,
         };
         check_body(root, &name, &field, bodies, &replacement)?;
         replacements.insert(name, replacement);
@@ -157,7 +179,7 @@ fn check_body(
         // The reader of the file finds whether it has bonds.
         _ => body.bond_kind.is_some(),
     };
-    if !has_bonds && replacement.daughters.is_none() {
+    if !has_bonds && !replacement.breaks_whole() {
         let problem = format!(
             "{}: body '{name}' has no bonds: it cannot break",
             field.path
@@ -198,19 +220,31 @@ fn refuse_others_daughters(
     Ok(())
 }
 
-/// A replacement by daughters, which the keys of the bonded cluster do not concern.
-fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement> {
+/// Refuses the keys of the bonded cluster, which do not concern what breaks as a whole.
+fn refuse_conditions(table: &Table<'_>, with: &str) -> Result<()> {
     for key in ["when", "require", "restore"] {
         if let Some(field) = table.get(key) {
+            let problem = format!("cannot be combined with {with}");
             let remedy =
-                "remove one of them: daughters have conditions of their own, and stay as they are";
-            return Err(field.fault("cannot be combined with daughters", remedy));
+                "remove one of them: daughters come by the energy taken in, and stay as they are";
+            return Err(field.fault(problem, remedy));
         }
     }
-    Ok(Replacement {
-        daughters: Some(daughters),
-        ..Replacement::default()
-    })
+    Ok(())
+}
+
+/// Refuses daughters that no relaxation holds back.
+fn refuse_unrelaxed(root: &Table<'_>, field: &Field<'_>) -> Result<()> {
+    if let Some(relaxation) = root.find(&["relaxation", "enabled"])
+        && !relaxation.boolean()?
+    {
+        let problem = format!(
+            "is false, but {} makes daughters that overlap: without relaxation they fly apart",
+            field.path
+        );
+        return Err(relaxation.fault(problem, "remove it"));
+    }
+    Ok(())
 }
 
 fn read(
@@ -235,6 +269,7 @@ fn read(
             .unwrap_or(false),
         restore: table.read_by("restore", |field| restore(&field, regions))?,
         daughters: None,
+        breakage: None,
     })
 }
 
@@ -266,7 +301,17 @@ fn refuse_unknown_names(
     Ok(())
 }
 
+impl Replacement {
+    /// Whether its particles break as a whole: into daughters of given sizes, or by a law.
+    pub fn breaks_whole(&self) -> bool {
+        self.daughters.is_some() || self.breakage.is_some()
+    }
+}
+
 pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
+    if let Some(breakage) = &replacement.breakage {
+        return listing.table("breakage", &BREAKAGE, |listing| breakage.list(listing));
+    }
     if let Some(daughters) = &replacement.daughters {
         return listing.table("daughters", &DAUGHTERS, |listing| {
             daughters::list(daughters, listing);

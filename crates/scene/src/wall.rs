@@ -23,7 +23,7 @@ use super::shape::{
 };
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
+use dem_io::units::{ANGLE, ANGULAR_VELOCITY, FREQUENCY, LENGTH, VELOCITY};
 use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox};
 
 table_schema! {
@@ -54,10 +54,18 @@ table_schema! {
     vector("velocity", &VELOCITY);
     /// Angular velocity about the pivot, which moves with the wall.
     vector("angular_velocity", &ANGULAR_VELOCITY);
-    /// Displacement of the pivot. Requires a `ramp` or `table` that begins at 0.
+    /// Displacement of the pivot. Requires a `ramp`, a `table` that begins at 0, or a `frequency`,
+    /// with which it is the amplitude.
     vector("displacement", &LENGTH);
-    /// Rotation about the pivot. Requires a `ramp` or `table` that begins at 0.
+    /// Rotation about the pivot. Requires a `ramp`, a `table` that begins at 0, or a `frequency`,
+    /// with which it is the amplitude.
     table("angular_displacement", &ROTATION).or(0.0);
+    /// The wall swings: `displacement` and `angular_displacement` have the factor
+    /// sin(2 pi f t + phase) - sin(phase).
+    quantity("frequency", &FREQUENCY).positive();
+    /// Phase of the swing at the start: at 0 deg the wall is in the middle of its way, at -90 deg
+    /// at its beginning, at rest, and goes twice the `displacement`.
+    quantity("phase", &ANGLE).or(0.0);
     /// Servo control: the wall moves such that it exerts a given force.
     table("servo", &motion::SERVO);
     RAMP;

@@ -2,7 +2,6 @@
 //! exceed it.
 
 use dem_io::units::{show_length, significant};
-use dem_scene::Factor;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -166,14 +165,6 @@ fn softest_bond(bonds: &Bonds, range: Range<usize>) -> Option<(f64, usize)> {
     softest.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Largest value of a factor over time.
-fn largest(factor: &Factor) -> f64 {
-    match factor {
-        Factor::One | Factor::Ramp { .. } => 1.0,
-        Factor::Table(points) => points.iter().fold(0.0, |most, [_, f]| most.max(f.abs())),
-    }
-}
-
 /// Loads that by themselves strain the bonds of their particles beyond the range of validity.
 fn by_loads(state: &State) -> Option<String> {
     let mut holds_n = vec![0.0; state.particles.len()];
@@ -184,7 +175,7 @@ fn by_loads(state: &State) -> Option<String> {
         }
     }
     let strains = state.loads.iter().flat_map(|load| {
-        let force_n = Vector3::from(load.force_n).norm() * largest(&load.factor);
+        let force_n = Vector3::from(load.force_n).norm() * load.factor.largest();
         let held = load.particles.iter().map(|&i| holds_n[i as usize]);
         held.filter(|stiff_n| *stiff_n > 0.0)
             .map(move |stiff_n| force_n / stiff_n)

@@ -204,6 +204,9 @@ pub struct Intake {
     pub impact_j: f64,
     /// Sum of the largest values in the impacts before, J.
     pub before_j: f64,
+    /// Part of its fracture energy that the impacts before have taken: see
+    /// [`dem_physics::breakage::damage`].
+    pub damage: f64,
 }
 
 /// All clumps. Their spheres are the last of the particles, in the same order.

@@ -95,8 +95,8 @@ pub enum PopulationEvent {
         cluster: u32,
         /// Name of its body.
         body: String,
-        /// Number of the size class, from 0.
-        class: usize,
+        /// What the daughters follow from.
+        into: BrokenInto,
         /// Name of the body of the daughters, and their number.
         daughters: (String, usize),
         /// Energy over mass that it had taken in, J/kg.
@@ -146,6 +146,20 @@ pub enum PopulationEvent {
         mass_kg: f64,
         /// Centre of mass, m. Length 3.
         place_m: [f64; 3],
+    },
+}
+
+/// What the daughters of a particle follow from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BrokenInto {
+    /// The size class with this number, from 0.
+    Class(usize),
+    /// The breakage law of the material.
+    Law {
+        /// Part of its mass below a tenth of its size.
+        t10: f64,
+        /// Mass of fragments that are too small to be made, kg.
+        fines_kg: f64,
     },
 }
 

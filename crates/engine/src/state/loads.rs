@@ -41,6 +41,10 @@ pub fn factor_at(factor: &Factor, time_s: f64) -> f64 {
         Factor::One => 1.0,
         Factor::Ramp { until_s } => (time_s / until_s).clamp(0.0, 1.0),
         Factor::Table(points) => interpolated(points, time_s).unwrap_or(1.0),
+        Factor::Oscillation {
+            frequency_hz,
+            phase_rad,
+        } => (std::f64::consts::TAU * frequency_hz * time_s + phase_rad).sin() - phase_rad.sin(),
     }
 }
 

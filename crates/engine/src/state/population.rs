@@ -22,6 +22,8 @@ pub struct Population {
     pub daughter_spheres: BTreeMap<(u32, u64), u32>,
     /// For each template of the scene, its particles that daughters replaced.
     pub by_daughters: Vec<u32>,
+    /// For each template of the scene, the mass of fragments that were too small to be made, kg.
+    pub fines_kg: Vec<f64>,
     /// For each cluster that was a clump, the template of the scene that it comes from, and its
     /// [instance](super::clumps::Clump::instance).
     pub base_of_cluster: BTreeMap<u32, (u32, u32)>,

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::population::InletProgress;
 use super::walls::Wall;
+use dem_physics::breakage::BreakageLaw;
 use dem_physics::geometry::Frame;
 use dem_physics::geometry::region::Region;
 
@@ -84,18 +85,33 @@ pub struct Restore {
 /// 2.1.1).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DaughterRule {
-    /// By ascending energy. At least one.
+    /// By ascending energy. None with a law.
     pub classes: Vec<SizeClass>,
+    /// Breakage by a law, which makes daughters of its own.
+    pub by_law: Option<ByLaw>,
+    /// Least energy over mass that replaces a particle of the body, or its median, J/kg.
+    pub needed_j_kg: f64,
     /// The energies of all impacts count together; otherwise each for itself.
     pub sums_impacts: bool,
     /// Modulus of the Weibull distribution of the energies of the classes. None: no scatter.
     pub weibull_modulus: Option<f64>,
-    /// Smallest diameter of a daughter that is replaced in turn, m; infinite: none is.
+    /// Smallest diameter of a daughter that is replaced in turn, m; infinite: none is. With a law,
+    /// of any daughter.
     pub smallest_size_m: f64,
     /// Largest number of particles of the body that are replaced.
     pub limit: u32,
     /// Radius of the smallest sphere that it can make, m; infinite: all daughters have bonds.
     pub smallest_radius_m: f64,
+}
+
+/// Breakage by a law of the material.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ByLaw {
+    /// The law.
+    pub law: BreakageLaw,
+    /// Exponent of the damage by impacts that do not break: see [`dem_physics::breakage::damage`].
+    /// None: there is none.
+    pub damage_exponent: Option<f64>,
 }
 
 /// A size class of daughters.

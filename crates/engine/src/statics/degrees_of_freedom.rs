@@ -130,11 +130,19 @@ fn way(hold: Hold, factor: &Factor, end_s: f64) -> f64 {
     }
 }
 
-/// Integral of a factor from 0 to `end_s`, s: it is linear between its points.
+/// Integral of a factor from 0 to `end_s`, s: unless it oscillates, it is linear between its points.
 fn integral_s(factor: &Factor, end_s: f64) -> f64 {
     let mut times = vec![0.0, end_s];
     match factor {
         Factor::One => {}
+        Factor::Oscillation {
+            frequency_hz,
+            phase_rad,
+        } => {
+            let angular_1_s = std::f64::consts::TAU * frequency_hz;
+            let turned_rad = angular_1_s * end_s + phase_rad;
+            return (phase_rad.cos() - turned_rad.cos()) / angular_1_s - end_s * phase_rad.sin();
+        }
         Factor::Ramp { until_s } => times.push(*until_s),
         Factor::Table(points) => times.extend(points.iter().map(|point| point[0])),
     }

@@ -3,6 +3,8 @@
 use dem_engine::state::watches::Recorded;
 
 use super::measurement::{IfZero, Measurement, Settles};
+use super::probe::Probe;
+use super::view::View;
 
 pub(super) const MEASUREMENTS: &[Measurement] = &[
     recorded("force_x", Recorded::Force, Settles::Always),
@@ -18,7 +20,26 @@ pub(super) const MEASUREMENTS: &[Measurement] = &[
             wall.map_or(f64::NAN, |w| 0.0 - w.total_load()[1][probe.measure.part])
         })
     },
+    Measurement {
+        settles: Settles::Never,
+        if_zero: IfZero::Untouched,
+        ..Measurement::new("work", |probe, view| work_j(probe, view))
+    },
+    Measurement {
+        settles: Settles::Never,
+        if_zero: IfZero::Untouched,
+        ..Measurement::new("power", |probe, view| match view.state.time_s {
+            0.0 => 0.0,
+            time_s => work_j(probe, view) / time_s,
+        })
+    },
 ];
+
+/// Work of the wall on particles since the start, J.
+fn work_j(probe: &Probe, view: &View<'_>) -> f64 {
+    let wall = probe.walls[0].and_then(|wall| view.state.walls.get(wall));
+    wall.map_or(f64::NAN, |wall| wall.work_j)
+}
 
 /// One that is recorded in every step, and has no value without steps.
 const fn recorded(name: &'static str, recorded: Recorded, settles: Settles) -> Measurement {

@@ -2,6 +2,8 @@
 //!
 //! Size is the opening of the smallest sieve that a fragment passes.
 
+use std::collections::BTreeMap;
+
 use dem_results::DistributionRow;
 use dem_results::summary::{RESOLVED_DIAMETERS, SizeSummary, Sizes, Unresolved};
 use rayon::prelude::*;
@@ -28,12 +30,16 @@ const ALL: &str = "all";
 
 /// Size of a fragment over that of its body above which it is the body itself.
 const WHOLE: f64 = 0.999;
+/// Size of fragments that were not made over the smallest size that is made.
+const JUST_BELOW: f64 = 1.0 - 1e-9;
 
 /// The fragments of a run, inside and discharged.
 #[derive(Debug, Clone, Default)]
 pub struct Fragments {
     inside: Vec<FragmentSize>,
     discharged: Vec<FragmentSize>,
+    /// Bodies that break by a law, and the smallest size of their daughters, m.
+    made_from_m: BTreeMap<u32, f64>,
 }
 
 impl Fragments {
@@ -43,15 +49,51 @@ impl Fragments {
         let size = |id: u32| size_of(id, clusters, &state.particles, &state.clumps);
         let discharged = state.population.discharged.iter();
         let living: Vec<u32> = clusters.living().collect();
-        Some(Self {
+        let mut fragments = Self {
             inside: living.into_par_iter().map(size).collect(),
             discharged: discharged.map(|one| one.size).collect(),
-        })
+            made_from_m: BTreeMap::new(),
+        };
+        fragments.add_fines(state);
+        Some(fragments)
+    }
+
+    /// Adds fragments that were too small to be made, as one of just below the smallest size of
+    /// each body. They have left, if anything can leave.
+    fn add_fines(&mut self, state: &State) {
+        let rules = &state.model.rules;
+        let templates = state.clumps.templates.iter();
+        let of_rules = templates
+            .zip(&rules.daughters)
+            .zip(&state.population.fines_kg);
+        for ((template, rule), mass_kg) in of_rules {
+            let Some(rule) = rule.as_ref().filter(|rule| rule.by_law.is_some()) else {
+                continue;
+            };
+            let body = state.model.body_number(&template.body);
+            self.made_from_m.insert(body, rule.smallest_size_m);
+            let fines = FragmentSize {
+                body,
+                mass_kg: *mass_kg,
+                sieve_m: JUST_BELOW * rule.smallest_size_m,
+                ..FragmentSize::default()
+            };
+            let place = if rules.outlets.is_empty() {
+                &mut self.inside
+            } else {
+                &mut self.discharged
+            };
+            place.extend((*mass_kg > 0.0).then_some(fines));
+        }
     }
 
     /// From these, for tests.
     pub fn from_parts(inside: Vec<FragmentSize>, discharged: Vec<FragmentSize>) -> Self {
-        Self { inside, discharged }
+        Self {
+            inside,
+            discharged,
+            ..Self::default()
+        }
     }
 
     /// The fragments of a body, or all, in these places, by ascending size.
@@ -94,21 +136,25 @@ impl Fragments {
     /// Diameter of the smallest sphere of the bodies that the fragments come from, m.
     fn smallest_m(&self, body: Option<u32>, model: &Model) -> f64 {
         let all = self.chosen(body, true, true);
-        let bodies = all
-            .iter()
-            .filter_map(|one| model.bodies.get(one.body as usize));
-        bodies.fold(f64::INFINITY, |least, body| {
-            least.min(body.smallest_diameter_m)
-        })
+        let own = all.iter().filter_map(|one| {
+            let sphere_m = model.bodies.get(one.body as usize)?.smallest_diameter_m;
+            Some(match self.made_from_m.get(&one.body) {
+                Some(made_m) => made_m.min(sphere_m),
+                None => sphere_m,
+            })
+        });
+        own.fold(f64::INFINITY, f64::min)
     }
 
     /// Size from which fragments of a body, or of all, are resolved, m; 0 for single spheres.
     fn resolved_from_m(&self, body: Option<u32>, model: &Model) -> f64 {
         let all = self.chosen(body, true, true);
-        let bodies = all
-            .iter()
-            .filter_map(|one| model.bodies.get(one.body as usize));
-        RESOLVED_DIAMETERS * bodies.fold(0.0, |most: f64, body| most.max(body.mean_diameter_m))
+        let own = all.iter().filter_map(|one| {
+            let of_spheres_m = model.bodies.get(one.body as usize)?.mean_diameter_m;
+            let made_m = self.made_from_m.get(&one.body);
+            Some(made_m.map_or(RESOLVED_DIAMETERS * of_spheres_m, |made_m| *made_m))
+        });
+        own.fold(0.0, f64::max)
     }
 
     /// The numbers of the summary.

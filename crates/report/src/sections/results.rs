@@ -258,6 +258,10 @@ fn add_population(population: &PopulationSummary, add: &mut dyn FnMut(&str, Stri
     if population.replaced_by_daughters > 0 {
         let count = population.replaced_by_daughters;
         add("particles replaced by daughters", count.to_string());
+        if population.fines_kg > 0.0 {
+            let fines = show_quantity(population.fines_kg, "kg");
+            add("fines, too small to be made", fines);
+        }
     } else if population.replaced > 0 || population.released == 0 {
         let count = population.replaced;
         add("clumps replaced by clusters", count.to_string());

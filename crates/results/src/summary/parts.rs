@@ -74,6 +74,8 @@ pub struct PopulationSummary {
     pub replaced: u32,
     /// Particles that daughters replaced.
     pub replaced_by_daughters: u32,
+    /// Mass of fragments of these that were too small to be made, kg.
+    pub fines_kg: f64,
     /// Clusters and fragments that became rigid clumps again.
     pub restored: u32,
     /// Bodies fed by inlets.
@@ -169,7 +171,9 @@ pub struct BodyFlow {
     pub discharged_kg: BTreeMap<String, f64>,
     /// Mass of the bodies and fragments inside, kg.
     pub inside_kg: f64,
-    /// At the start and fed, less discharged and inside, kg: 0, to rounding. None: daughters of
+    /// Mass of fragments that were too small to be made, kg.
+    pub fines_kg: f64,
+    /// At the start and fed, less discharged, inside and fines, kg: 0, to rounding. None: daughters of
     /// other bodies have replaced bodies, and their mass counts as that of their own body.
     pub missing_kg: Option<f64>,
 }

@@ -70,9 +70,13 @@ impl Summary {
             ),
         };
         let fed = significant(bodies.fed_kg, 4);
+        let fines = match bodies.fines_kg {
+            0.0 => String::new(),
+            fines_kg => format!(", {} kg of fines", significant(fines_kg, 4)),
+        };
         writeln!(
             out,
-            "bodies       {} fed ({fed} kg){discharged}",
+            "bodies       {} fed ({fed} kg){discharged}{fines}",
             bodies.fed
         )
     }

@@ -191,7 +191,7 @@ impl Summary {
         if p.has_changed() {
             writeln!(
                 f,
-                "bodies       {} fed ({} kg), {} replaced{}, {} restored, {} discharged, fragments included ({} kg), {} clumps{} at the end",
+                "bodies       {} fed ({} kg), {} replaced{}, {} restored, {} discharged, fragments included ({} kg), {}{} clumps{} at the end",
                 p.fed,
                 significant(p.fed_kg, 4),
                 p.replaced,
@@ -202,6 +202,10 @@ impl Summary {
                 p.restored,
                 p.discharged,
                 significant(p.discharged_kg, 4),
+                match p.fines_kg {
+                    0.0 => String::new(),
+                    fines_kg => format!("{} kg of fines, ", significant(fines_kg, 4)),
+                },
                 p.clumps,
                 match p.single_sphere_bodies {
                     0 => String::new(),

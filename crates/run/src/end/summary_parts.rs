@@ -45,6 +45,7 @@ pub(crate) fn population_summary(
         single_sphere_bodies: clumps.all.len() - several + single_spheres(state, bodies),
         replaced: population.replaced,
         replaced_by_daughters: population.by_daughters.iter().sum(),
+        fines_kg: population.fines_kg.iter().fold(0.0, |sum, kg| sum + kg),
         restored: population.restored,
         fed: population.inlets.iter().map(|come| come.bodies).sum(),
         fed_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),

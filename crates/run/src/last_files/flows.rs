@@ -52,6 +52,10 @@ pub(crate) fn body_flows(
         let mass_kg = mass_kg_of(id, clusters, &state.particles, &state.clumps);
         flows[clusters.history[id as usize].body as usize].inside_kg += mass_kg;
     }
+    let templates = state.clumps.templates.iter();
+    for (template, fines_kg) in templates.zip(&state.population.fines_kg) {
+        flows[state.model.body_number(&template.body) as usize].fines_kg += fines_kg;
+    }
     let history = &clusters.history;
     let is_of_other = |cluster: &Cluster| {
         let parent = cluster
@@ -62,7 +66,7 @@ pub(crate) fn body_flows(
     let mixes = history.iter().any(is_of_other);
     for flow in &mut flows {
         let gone_kg: f64 = flow.discharged_kg.values().sum();
-        let missing_kg = flow.start_kg + flow.fed_kg - gone_kg - flow.inside_kg;
+        let missing_kg = flow.start_kg + flow.fed_kg - gone_kg - flow.inside_kg - flow.fines_kg;
         flow.missing_kg = (!mixes).then_some(missing_kg);
     }
     let names = state.model.bodies.iter().map(|body| body.name.clone());

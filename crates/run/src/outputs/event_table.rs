@@ -11,7 +11,7 @@ use crate::new_step::NewStep;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, bond_of_file};
 use dem_engine::state::clusters::{Cluster, Split};
-use dem_engine::state::events::{PopulationEvent, STARTS_BONDED};
+use dem_engine::state::events::{BrokenInto, PopulationEvent, STARTS_BONDED};
 
 /// Largest number of fragments named in the text of a split.
 const NAMED: usize = 8;
@@ -195,17 +195,20 @@ fn detail(event: &PopulationEvent) -> String {
         PopulationEvent::Broken {
             cluster,
             body,
-            class,
-            daughters: (class_body, count),
+            into,
+            daughters: (of_body, count),
             specific_j_kg,
             mass_kg,
             momentum_n_s,
             kinetic_j,
             ..
         } => format!(
-            "fragment {cluster} ({body}): {} J/kg; class {} ({class_body}); {count} daughters; {}",
+            "fragment {cluster} ({body}): {} J/kg; {}; {count} daughters; {}",
             exact(*specific_j_kg),
-            class + 1,
+            match into {
+                BrokenInto::Class(number) => format!("class {} ({of_body})", number + 1),
+                BrokenInto::Law { t10, fines_kg } => format!("t10 {t10:.4}; fines {fines_kg:e} kg"),
+            },
             kept(mass_kg, momentum_n_s, kinetic_j)
         ),
         PopulationEvent::Restored {

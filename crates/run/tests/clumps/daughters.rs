@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use dem_engine::Balance;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Clump;
-use dem_engine::state::events::PopulationEvent;
+use dem_engine::state::events::{BrokenInto, PopulationEvent};
 use dem_engine::step::exchange;
 use dem_plan::Plan;
 use nalgebra::{Matrix3, Vector3};
@@ -278,7 +278,7 @@ fn the_energy_at_the_end_of_the_compression_chooses_the_size_class() {
         let (state, events, last) = hit(speed_m_s, 0.0, &rule, 0.5);
         let found = events.iter().map(|event| match event {
             PopulationEvent::Broken {
-                class,
+                into: BrokenInto::Class(class),
                 daughters,
                 specific_j_kg,
                 ..

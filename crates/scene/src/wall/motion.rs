@@ -98,9 +98,15 @@ const KEYS: [&str; 5] = [
 ];
 
 pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
+    if let (Some(field), None) = (wall.get("phase"), wall.get("frequency")) {
+        return Err(field.fault(
+            "has no effect without frequency",
+            "add frequency = \"4 Hz\"",
+        ));
+    }
     let mut given = wall.given(&KEYS);
     let Some((first, field)) = given.next() else {
-        if let Some(field) = over_time(wall) {
+        if let Some(field) = over_time(wall).or_else(|| wall.get("frequency")) {
             let problem = "has no effect without velocity, displacement or servo";
             return Err(field.fault(problem, "remove it"));
         }
@@ -111,12 +117,19 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
         let remedy = "a wall moves at a velocity, by a displacement or as a servo: remove one";
         return Err(second.fault(format!("cannot be combined with {first}"), remedy));
     }
+    if let (Some(field), true) = (wall.get("frequency"), way(first) != Some(1)) {
+        let problem = format!("cannot be combined with {first}");
+        return Err(field.fault(
+            problem,
+            "give the amplitude: displacement or angular_displacement",
+        ));
+    }
     match first {
         "servo" => servo(&field, factor(wall)?),
         "displacement" | "angular_displacement" => Ok(WallMotion::Displacement {
             displacement_m: wall.read("displacement")?,
             angular_displacement_rad: wall.read("angular_displacement")?,
-            factor: factor_from_zero(wall, &field)?,
+            factor: of_displacement(wall, &field)?,
         }),
         _ => Ok(WallMotion::Velocity {
             velocity_m_s: wall.read("velocity")?,
@@ -124,6 +137,21 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
             factor: factor(wall)?,
         }),
     }
+}
+
+/// The factor of the displacement given by `moved`.
+fn of_displacement(wall: &Table<'_>, moved: &Field<'_>) -> Result<Factor> {
+    let Some(field) = wall.get("frequency") else {
+        return factor_from_zero(wall, moved);
+    };
+    if over_time(wall).is_some() {
+        let problem = "cannot be combined with ramp or table";
+        return Err(field.fault(problem, "the motion follows one of them: remove the other"));
+    }
+    Ok(Factor::Oscillation {
+        frequency_hz: wall.read("frequency")?,
+        phase_rad: wall.read("phase")?,
+    })
 }
 
 fn servo(field: &Field<'_>, factor: Factor) -> Result<WallMotion> {

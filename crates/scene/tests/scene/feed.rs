@@ -115,6 +115,7 @@ fn replacement() {
                 fluctuation_velocity_m_s: 0.001,
             }),
             daughters: None,
+            breakage: None,
         }
     );
     assert_eq!(
@@ -133,6 +134,7 @@ fn replacement() {
                 fluctuation_velocity_m_s: 0.005,
             }),
             daughters: None,
+            breakage: None,
         }
     );
 }

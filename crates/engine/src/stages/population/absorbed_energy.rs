@@ -16,8 +16,12 @@ use crate::stages::contacts::forces::pair_force_n;
 use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::{surface_velocity_m_s, touch_force_n};
 use crate::state::State;
-use crate::state::clumps::Intake;
+use crate::state::clumps::{Clump, Intake, Template};
 use crate::state::contacts::Contacts;
+use crate::state::rules::DaughterRule;
+use dem_io::random::hash;
+use dem_physics::bond::scatter::body_key;
+use dem_physics::breakage::{BreakageLaw, damage};
 
 /// Particles that daughters replace.
 pub(crate) const DAUGHTERS: Stage = Stage::new("daughters", |state, _| {
@@ -36,6 +40,7 @@ pub(crate) fn take_in_energy(state: &mut State) -> usize {
     }
     let mut powers_w = std::mem::take(&mut state.scratch.powers_w);
     find_powers_w(state, &mut powers_w);
+    damage_by_ended_impacts(state, &powers_w);
     let kick_s = state.kick_s();
     let mut touched = 0;
     for (clump, &power_w) in state.clumps.all.iter_mut().zip(&powers_w) {
@@ -51,6 +56,47 @@ pub(crate) fn take_in_energy(state: &mut State) -> usize {
     touched
 }
 
+/// Damages the clumps that nothing touches any more, and whose impact has not broken them: see
+/// [`damage`].
+fn damage_by_ended_impacts(state: &mut State, powers_w: &[Option<f64>]) {
+    let rules = &state.model.rules;
+    let by_law = |rule: &Option<DaughterRule>| rule.as_ref().and_then(|rule| rule.by_law);
+    if !(rules.daughters.iter())
+        .any(|rule| by_law(rule).is_some_and(|by| by.damage_exponent.is_some()))
+    {
+        return;
+    }
+    for n in 0..powers_w.len() {
+        let clump = &state.clumps.all[n];
+        if powers_w[n].is_some() || clump.asleep || clump.intake.impact_j <= 0.0 {
+            continue;
+        }
+        let template = state.clumps.template(clump);
+        let base = state.base_of(clump.template) as usize;
+        let Some(by_law) = state.model.rules.daughters.get(base).and_then(by_law) else {
+            continue;
+        };
+        let left_j_kg = fracture_energy_j_kg(clump, template, &by_law.law, state.model.rules.seed);
+        if let (Some(exponent), true) = (by_law.damage_exponent, left_j_kg > 0.0) {
+            let ratio = clump.intake.impact_j / (template.mass_kg * left_j_kg);
+            let intake = &mut state.clumps.all[n].intake;
+            intake.damage += (1.0 - intake.damage) * damage(ratio.min(1.0), exponent);
+        }
+    }
+}
+
+/// Fracture energy over mass of a particle, less what earlier impacts have taken, J/kg.
+pub(super) fn fracture_energy_j_kg(
+    clump: &Clump,
+    template: &Template,
+    law: &BreakageLaw,
+    seed: u64,
+) -> f64 {
+    let particle = hash(body_key(&template.body, 0), [u64::from(clump.first_id)]);
+    let whole_j_kg = law.own_energy_j_kg(seed, particle, template.size_m());
+    (1.0 - clump.intake.damage) * whole_j_kg
+}
+
 impl Intake {
     /// Adds work, J. None: nothing touches the particle any more.
     fn advance(&mut self, work_j: Option<f64>) {
@@ -62,6 +108,7 @@ impl Intake {
             None => {
                 *self = Self {
                     before_j: self.before_j + self.impact_j,
+                    damage: self.damage,
                     ..Self::default()
                 }
             }

@@ -8,16 +8,19 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::absorbed_energy::fracture_energy_j_kg;
 use super::change::apply_topology_change;
 use crate::stages::clumps::motion::kick_one;
 use crate::stages::contacts::forces::{pair_force_n, touch_point_m};
 use crate::stages::walls::{relax_touches, surface_velocity_m_s, touch_force_n};
 use crate::state::State;
 use crate::state::clumps::{Clump, SubSphere, Template, sphere_volume_m3};
-use crate::state::events::{PopulationEvent, TopologyChange};
+use crate::state::events::{BrokenInto, PopulationEvent, TopologyChange};
 use crate::state::population::FragmentTemplate;
-use crate::state::rules::{DaughterRule, SizeClass};
+use crate::state::rules::{ByLaw, DaughterRule, SizeClass};
+use dem_io::random::hash;
 use dem_physics::bond::scatter::{body_key, strength_factor};
+use dem_physics::breakage::daughters::{arranged_m, diameters_m};
 use dem_physics::rotation::{numbers, rotation};
 use dem_physics::shape::packing_fit::fit;
 use std::sync::Arc;
@@ -26,10 +29,25 @@ use std::sync::Arc;
 struct Due {
     /// Number of the clump.
     clump: usize,
-    /// Number of the size class.
-    class: usize,
+    /// What its daughters follow from.
+    into: Into,
     /// Energy over mass that it has taken in, J/kg.
     specific_j_kg: f64,
+}
+
+/// What the daughters of a particle follow from.
+#[derive(Clone, Copy)]
+enum Into {
+    /// The size class with this number.
+    Class(usize),
+    /// The breakage law, with this t10.
+    Law(f64),
+}
+
+/// The daughters of a particle, and the mass of the fragments that are too small to be made, kg.
+struct Daughters {
+    clumps: Vec<Clump>,
+    fines_kg: f64,
 }
 
 /// Replaces the particles that have taken in enough energy, between a kick and the drift after it.
@@ -62,12 +80,11 @@ fn due(state: &State) -> Vec<Due> {
         let Some(rule) = rules.daughters.get(base).and_then(Option::as_ref) else {
             continue;
         };
-        if let (Some((class, specific_j_kg)), true) = (reached(clump, rule, state), left[base] > 0)
-        {
+        if let (Some((into, specific_j_kg)), true) = (reached(clump, rule, state), left[base] > 0) {
             left[base] -= 1;
             due.push(Due {
                 clump: n,
-                class,
+                into,
                 specific_j_kg,
             });
         }
@@ -75,8 +92,8 @@ fn due(state: &State) -> Vec<Due> {
     due
 }
 
-/// The size class that a particle has reached for good, and its energy over mass, J/kg.
-fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(usize, f64)> {
+/// What a particle breaks into, once that is certain, and its energy over mass, J/kg.
+fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Into, f64)> {
     let intake = &clump.intake;
     let before_j = if rule.sums_impacts {
         intake.before_j
@@ -93,6 +110,12 @@ fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(usize, 
         return None;
     }
     let specific_j_kg = energy_j / template.mass_kg;
+    if let Some(ByLaw { law, .. }) = &rule.by_law {
+        let fracture_j_kg = fracture_energy_j_kg(clump, template, law, state.model.rules.seed);
+        let t10 = law.t10(template.size_m(), specific_j_kg, fracture_j_kg);
+        let is_certain = law.is_crushed(t10) || !intake.grows();
+        return (t10 > 0.0 && is_certain).then_some((Into::Law(t10), specific_j_kg));
+    }
     let factor = rule.weibull_modulus.map_or(1.0, |modulus| {
         let particle = [u64::from(clump.first_id); 2];
         strength_factor(
@@ -111,7 +134,7 @@ fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(usize, 
         .filter(|(_, class)| is_reached(class))
         .last()?;
     let (last, _) = classes.last()?;
-    (class == last || !intake.grows()).then_some((class, specific_j_kg))
+    (class == last || !intake.grows()).then_some((Into::Class(class), specific_j_kg))
 }
 
 /// Replaces these particles, ascending, and records the events and the energy lost.
@@ -121,22 +144,33 @@ fn replace(state: &mut State, due: &[Due]) {
     state.ledger.gain(kept_back_j);
     let mut change = TopologyChange::default();
     let mut counts = Vec::new();
+    let mut fines = Vec::new();
     for one in due {
         let parent = state.clumps.all[one.clump];
-        let daughters = daughters_of(&parent, one.class, state);
+        let Daughters {
+            clumps: daughters,
+            fines_kg,
+        } = daughters_of(&parent, one.into, state);
         let (gravity, half_s) = (state.model.gravity_m_s2, 0.5 * state.time_step_s);
         let before = at_positions(&parent, state.clumps.template(&parent), gravity, half_s);
         let kinetic_j = |clump: &Clump, state: &State| {
             let template = state.clumps.template(clump);
             at_positions(clump, template, gravity, half_s).kinetic_j(template)
         };
-        let before_j = before.kinetic_j(state.clumps.template(&parent));
+        let template = state.clumps.template(&parent);
+        let before_j = before.kinetic_j(template);
+        let of_fines = fines_kg / template.mass_kg;
         let after_j: f64 = daughters
             .iter()
             .map(|daughter| kinetic_j(daughter, state))
             .sum();
-        state.ledger.gain(after_j - before_j);
-        record(state, one, &daughters, [before_j, after_j]);
+        state.ledger.gain(after_j - (1.0 - of_fines) * before_j);
+        if fines_kg > 0.0 {
+            let own = parent.angular_momentum.map(|l| of_fines * l);
+            let motion = [parent.place_m, parent.velocity_m_s, own];
+            fines.push(([fines_kg, of_fines * before_j], motion));
+        }
+        record(state, one, (&daughters, fines_kg), [before_j, after_j]);
         counts.push(daughters.len());
         change.coming.extend(daughters);
         change.leaving.push(parent.cluster);
@@ -159,20 +193,33 @@ fn replace(state: &mut State, due: &[Due]) {
     }
     relax_on_walls(state, first as u32);
     state.ledger.book_broken_particles(brought_j);
+    // Fines leave the scene, with their motion.
+    for (mass_and_energy, motion) in fines {
+        (state.ledger).bring(-1.0, mass_and_energy, motion, state.model.gravity_m_s2);
+    }
 }
 
-/// Records the replacement of a particle: kinetic energies before and after, J.
-fn record(state: &mut State, one: &Due, daughters: &[Clump], kinetic_j: [f64; 2]) {
+/// Records the replacement of a particle by daughters and fines, kg: kinetic energies before and
+/// after, J.
+fn record(
+    state: &mut State,
+    one: &Due,
+    (daughters, fines_kg): (&[Clump], f64),
+    kinetic_j: [f64; 2],
+) {
     let parent = state.clumps.all[one.clump];
     let template = Arc::clone(state.clumps.template(&parent));
     let base = state.base_of(parent.template) as usize;
     state.population.by_daughters[base] += 1;
-    let class = state.model.rules.daughters[base]
-        .as_ref()
-        .map(|rule| rule.classes[one.class]);
-    let class_body = class.map_or("", |class| {
-        &state.clumps.templates[class.template as usize].body
-    });
+    state.population.fines_kg[base] += fines_kg;
+    let (into, body) = match (one.into, &state.model.rules.daughters[base]) {
+        (Into::Class(number), Some(rule)) => {
+            let class = &state.clumps.templates[rule.classes[number].template as usize];
+            (BrokenInto::Class(number), class.body.clone())
+        }
+        (Into::Class(number), None) => (BrokenInto::Class(number), String::new()),
+        (Into::Law(t10), _) => (BrokenInto::Law { t10, fines_kg }, template.body.clone()),
+    };
     let (mut mass_kg, mut momentum) = (0.0, Vector3::zeros());
     for daughter in daughters {
         let of_one_kg = state.clumps.template(daughter).mass_kg;
@@ -183,8 +230,8 @@ fn record(state: &mut State, one: &Due, daughters: &[Clump], kinetic_j: [f64; 2]
     let event = PopulationEvent::Broken {
         cluster: parent.cluster,
         body: template.body.clone(),
-        class: one.class,
-        daughters: (class_body.to_owned(), daughters.len()),
+        into,
+        daughters: (body, daughters.len()),
         specific_j_kg: one.specific_j_kg,
         mass_kg: [template.mass_kg, mass_kg],
         momentum_n_s: [momentum_before.norm(), momentum.norm()],
@@ -201,34 +248,77 @@ fn at_positions(clump: &Clump, template: &Template, gravity: [f64; 3], half_s: f
     now
 }
 
-/// The daughters of a particle in this size class.
-fn daughters_of(parent: &Clump, class: usize, state: &mut State) -> Vec<Clump> {
+/// What a particle breaks into.
+fn daughters_of(parent: &Clump, into: Into, state: &mut State) -> Daughters {
     let base = state.base_of(parent.template);
-    let Some(rule) = &state.model.rules.daughters[base as usize] else {
-        return Vec::new();
-    };
-    let class = rule.classes[class];
-    let packing = Arc::clone(&state.clumps.templates[class.template as usize]);
     let template = Arc::clone(state.clumps.template(parent));
+    let whole = |clumps| Daughters {
+        clumps,
+        fines_kg: 0.0,
+    };
+    let Some(rule) = &state.model.rules.daughters[base as usize] else {
+        return whole(Vec::new());
+    };
+    let number = match (into, &rule.by_law) {
+        (Into::Class(number), _) => number,
+        (Into::Law(t10), Some(by_law)) => {
+            let seed = hash(state.model.rules.seed, [u64::from(parent.first_id)]);
+            let ball_m = 0.5 * template.size_m() - deepest_m(state, parent);
+            let diameters_m = diameters_m(
+                by_law.law.family_exponent,
+                t10,
+                template.size_m(),
+                rule.smallest_size_m,
+            );
+            let spheres = packed(&template, &diameters_m, ball_m, seed);
+            let mass_kg: f64 = spheres.iter().map(|sphere| sphere.mass_kg).sum();
+            let clumps = as_clumps(
+                parent,
+                &spheres,
+                parent.turned,
+                mass_kg / template.mass_kg,
+                state,
+            );
+            return Daughters {
+                clumps,
+                fines_kg: template.mass_kg - mass_kg,
+            };
+        }
+        (Into::Law(_), None) => return whole(Vec::new()),
+    };
+    let class = rule.classes[number];
+    let packing = Arc::clone(&state.clumps.templates[class.template as usize]);
     let of_file = rotation(parent.turned) * rotation(template.axes).inverse();
-    let turned = of_file * rotation(packing.axes);
+    let turned = numbers(&(of_file * rotation(packing.axes)));
     if !class.loose {
-        return vec![Clump {
+        return whole(vec![Clump {
             template: class.template,
-            turned: numbers(&turned),
+            turned,
             // Bodies from inlets count from the other end.
             instance: u32::MAX - parent.cluster,
             place_m: parent.place_m,
             velocity_m_s: parent.velocity_m_s,
             angular_momentum: parent.angular_momentum,
             ..Clump::default()
-        }];
+        }]);
     }
     let spheres = arranged(&packing, &template);
-    let spin = spin_rad_s(
-        &spheres,
-        &(turned.inverse() * Vector3::from(parent.angular_momentum)),
-    );
+    whole(as_clumps(parent, &spheres, turned, 1.0, state))
+}
+
+/// Spheres within a particle, about its centre of mass in axes turned like this, as clumps that
+/// move as one with this share of its angular momentum.
+fn as_clumps(
+    parent: &Clump,
+    spheres: &[SubSphere],
+    turned: [f64; 4],
+    share: f64,
+    state: &mut State,
+) -> Vec<Clump> {
+    let base = state.base_of(parent.template);
+    let turned = rotation(turned);
+    let angular_momentum = share * Vector3::from(parent.angular_momentum);
+    let spin = spin_rad_s(spheres, &(turned.inverse() * angular_momentum));
     let [place, velocity] = [parent.place_m, parent.velocity_m_s].map(Vector3::from);
     (spheres.iter())
         .map(|sphere| {
@@ -244,6 +334,40 @@ fn daughters_of(parent: &Clump, class: usize, state: &mut State) -> Vec<Clump> {
             }
         })
         .collect()
+}
+
+/// Largest distance that something reaches into a particle, m: walls by the whole overlap, others
+/// by half of it.
+fn deepest_m(state: &State, clump: &Clump) -> f64 {
+    let own = state.clumps.spheres_of(clump);
+    let is_own = |i: u32| own.contains(&(i as usize));
+    let touches = state.walls.iter().flat_map(|wall| &wall.touching);
+    let touches = touches.filter(|touch| is_own(touch.particle));
+    let of_walls = touches.map(|touch| touch.history.overlap_m() + touch.history.origin_m());
+    let contacts = state.contacts.iter();
+    let pairs = contacts.flat_map(|contacts| contacts.pairs.iter().zip(&contacts.histories));
+    let pairs = pairs.filter(|([a, b], _)| is_own(*a) || is_own(*b));
+    let of_pairs = pairs.map(|(_, history)| 0.5 * (history.overlap_m() + history.origin_m()));
+    of_walls.chain(of_pairs).fold(0.0, f64::max)
+}
+
+/// Spheres of these diameters, m, of the density of a particle, within a ball of this radius, m,
+/// about its centre of mass.
+fn packed(parent: &Template, diameters_m: &[f64], ball_m: f64, seed: u64) -> Vec<SubSphere> {
+    let radii_m: Vec<f64> = diameters_m.iter().map(|diameter| 0.5 * diameter).collect();
+    let places_m = arranged_m(&radii_m, ball_m, seed);
+    let spheres = radii_m.iter().zip(places_m);
+    let sphere = |(&radius_m, place_m): (&f64, Vector3<f64>)| {
+        let mass_kg = parent.mass_kg * (2.0 * radius_m / parent.size_m()).powi(3);
+        SubSphere {
+            place_m: place_m.into(),
+            turned: [0.0, 0.0, 0.0, 1.0],
+            radius_m,
+            mass_kg,
+            inertia_kg_m2: 0.4 * mass_kg * radius_m * radius_m,
+        }
+    };
+    spheres.map(sphere).collect()
 }
 
 /// The spheres of a packing, in its principal axes, as daughters of a particle: see [`fit`].
