@@ -16,6 +16,7 @@ pub mod lines;
 pub mod own_command;
 pub mod random;
 pub mod safe_write;
+pub mod sieve_curve;
 pub mod stl;
 pub mod surface;
 pub mod text;

@@ -18,10 +18,9 @@ mod distribution;
 mod fit;
 mod laws;
 mod parse;
-mod sieve;
 
 pub use self::curve::Curve;
 pub use self::distribution::Sizes;
 pub use self::fit::{Fit, ks_distance_by_mass, ks_distance_by_number};
 pub use self::laws::Basis;
-pub use self::sieve::{SieveCurve, parse as parse_sieve_curve};
+pub use dem_io::sieve_curve::{SieveCurve, parse as parse_sieve_curve};

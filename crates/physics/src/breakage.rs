@@ -77,9 +77,9 @@ impl BreakageLaw {
         -self.largest_t10 * (-b_kg_j * beyond_j_kg).exp_m1()
     }
 
-    /// Whether a particle with this t10 breaks at once, as more energy hardly makes finer pieces.
-    pub fn is_crushed(&self, t10: f64) -> bool {
-        t10 >= NEARLY_ALL * self.largest_t10
+    /// t10 from which more energy hardly makes finer pieces.
+    pub fn nearly_largest_t10(&self) -> f64 {
+        NEARLY_ALL * self.largest_t10
     }
 
     /// Part of the particles of this size, m, that this energy over mass, J/kg, breaks.

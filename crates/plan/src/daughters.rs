@@ -173,6 +173,8 @@ fn rule_of_law(law: BreakageLaw, breakage: &Breakage, parent: &Template) -> Daug
         by_law: Some(ByLaw {
             law,
             damage_exponent: breakage.damage_exponent,
+            at_once_from_t10: (breakage.at_once_from_t10)
+                .unwrap_or_else(|| law.nearly_largest_t10()),
         }),
         needed_j_kg: law.median_energy_j_kg(parent.size_m()),
         sums_impacts: false,

@@ -22,6 +22,7 @@ mod placement;
 mod quality;
 mod questions;
 mod rules;
+mod sieve_sizes;
 mod stages;
 pub mod time_step;
 mod triggers;
@@ -73,6 +74,7 @@ use self::outputs::refuse_endless_output;
 use self::placement::placed;
 use self::quality::Quality;
 use self::rules::{doubts, rules};
+use self::sieve_sizes::scale_to_sieves;
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
@@ -130,6 +132,7 @@ pub fn plan(
     allow_any_step: bool,
 ) -> Result<Plan> {
     let inputs = inputs(scene, &read);
+    scale_to_sieves(scene, &mut read);
     let scene = &fitted(placed(scene, &read)?, &mut read)?;
     let about: BTreeMap<String, About> = (read.iter())
         .map(|(name, body)| (name.clone(), body.about.clone()))

@@ -32,6 +32,7 @@ pub fn scene_as_run(text: &str, scene: &Scene, overrides: &[String], to: &Path) 
 
 fn set_paths(root: &mut Entries, scene: &Scene, to: &Path) {
     for (name, body) in &scene.bodies {
+        let name = body.class_of.as_ref().unwrap_or(name);
         if let (BodySource::File(file), Some(entry)) = (&body.source, entry(root, "bodies", name)) {
             entry.retain(|(name, _)| !["particles", "bond_list"].contains(&name.as_str()));
             set_path(entry, "file", file, to);
@@ -47,6 +48,11 @@ fn set_paths(root: &mut Entries, scene: &Scene, to: &Path) {
     for (name, region) in &scene.regions {
         if let (Region::Stl { file, .. }, Some(entry)) = (region, entry(root, "regions", name)) {
             set_path(entry, "stl", file, to);
+        }
+    }
+    for (name, inlet) in &scene.inlets {
+        if let (Some(sizes), Some(entry)) = (&inlet.sizes, entry(root, "inlets", name)) {
+            set_path(entry, "sizes", &sizes.file, to);
         }
     }
     let measured = scene.test.as_ref().and_then(|test| test.measured.as_ref());

@@ -64,6 +64,12 @@ pub struct BodyEntry {
     pub start_as: StartAs,
     /// `bonded_within`. None: all of it is bonded.
     pub bonded_within: Option<Zone>,
+    /// `sieve_size`: smallest square opening that the body is scaled to pass, m. None: the size of
+    /// its file.
+    pub sieve_size_m: Option<f64>,
+    /// The body of the scene that it is a size class of: see [`super::FeedSizes`]. None: it is in the
+    /// scene itself.
+    pub class_of: Option<String>,
     /// `body_density` or `mass`. None: its spheres have the density of the material.
     pub whole_mass: Option<WholeMass>,
 }
@@ -116,6 +122,9 @@ table_schema! {
     new("bond_list", Kind::List(&Kind::Row(&[INDEX, INDEX])));
     /// Its material.
     text("material", "a name in [materials]").required("\"NAME\", a name in [materials]");
+    /// Scales the body, its spheres and bonds included, until it just passes a square opening of
+    /// this side.
+    quantity("sieve_size", &LENGTH).positive().otherwise("the size of its file");
     /// Mass of the body over the volume of its shape, which is stored in its file.
     quantity("body_density", &DENSITY).positive();
     /// Mass of the body. Without `mass` and `body_density`, its spheres have the density of the
@@ -223,6 +232,8 @@ fn read(
         angular_velocity_rad_s: table.read("angular_velocity")?,
         start_as,
         bonded_within: table.read_by("bonded_within", |field| zone::read(&field, regions))?,
+        sieve_size_m: table.read("sieve_size")?,
+        class_of: None,
         whole_mass,
     })
 }
@@ -313,6 +324,7 @@ pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
         }
     }
     listing.text("material", &body.material);
+    listing.value("sieve_size", &body.sieve_size_m);
     match body.whole_mass {
         Some(WholeMass::Density(density)) => listing.value("body_density", &density),
         Some(WholeMass::Mass(mass)) => listing.value("mass", &mass),

@@ -59,6 +59,12 @@ plain_table! {
             .within(Excluded(2.5), Unbounded)
             .remedy("a usual value is 5")
             .otherwise("they leave no trace");
+        /// t10 at which the particle breaks while its contacts still press harder; the pieces take
+        /// the rest. Small for jaws and rolls, which press on.
+        at_once_from_t10: Option<f64> = number("at_once_from_t10")
+            .within(Excluded(0.0), Excluded(1.0))
+            .remedy("a usual value is 0.05")
+            .otherwise("90 % of the largest");
         /// Largest number of particles of this body that break; then the others stay whole.
         limit: u32 = new("limit", Kind::COUNT).remedy("a usual value is 100000").or(LIMIT);
     }

@@ -1,17 +1,21 @@
 //! `[inlets.NAME]`
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use super::body::BodyEntry;
+use super::feed_sizes::FeedSizes;
 use super::field::Field;
 use super::listing::Listing;
 use super::numbers::number;
+use super::paths::named_path;
 use super::region::Region;
 use super::replacement::{Replacement, parent_of};
 use super::schema::{Kind, Word, table_schema, words_of};
 use super::table::Table;
 use super::tree::Value;
 use dem_io::diagnostic::Result;
+use dem_io::sieve_curve;
 use dem_io::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
 
 /// Orientation of new bodies; true for random.
@@ -33,6 +37,10 @@ table_schema! {
     /// What the proportions of `bodies` are of: the numbers of bodies fed, or their masses, as in a
     /// feed by sieve classes.
     word::<SharesBy>("shares_by", "number");
+    /// Sieve curve of the feed, a CSV file as `dem-pack --diameter sieve:FILE.csv` reads it: each
+    /// body is fed in the sizes of the curve, one for each class between two sieves, their
+    /// geometric mean, by mass. Results name them `NAME-20-40mm`.
+    text("sizes", "a file").otherwise("the sizes of the bodies");
     /// Region in which centres of new bodies are placed at random.
     text("region", "a name in [regions]").required("\"NAME\", a name in [regions]");
     /// Bodies per second.
@@ -61,6 +69,8 @@ pub struct Inlet {
     pub bodies: Vec<(String, f64)>,
     /// `shares_by`: what these are proportions of.
     pub shares_by: SharesBy,
+    /// `sizes`: `bodies` are those of its size classes. None: bodies as they are.
+    pub sizes: Option<FeedSizes>,
     /// `region`: a name of `[regions]`, in which the centres of new bodies are placed at random.
     pub region: String,
     /// `rate` or `mass_rate`
@@ -111,13 +121,14 @@ pub enum FeedRate {
 
 pub(super) fn read_all(
     root: &Table<'_>,
+    folder: &Path,
     bodies: &BTreeMap<String, BodyEntry>,
     regions: &BTreeMap<String, Region>,
     replacement: &BTreeMap<String, Replacement>,
 ) -> Result<BTreeMap<String, Inlet>> {
     let mut inlets = BTreeMap::new();
     for (name, field) in root.named("inlets")? {
-        let inlet = read(&field, bodies, regions)?;
+        let inlet = read(&field, folder, bodies, regions)?;
         for (body, _) in &inlet.bodies {
             if let Some(parent) = parent_of(body, replacement) {
                 let problem = format!(
@@ -136,6 +147,7 @@ pub(super) fn read_all(
 
 fn read(
     field: &Field<'_>,
+    folder: &Path,
     bodies: &BTreeMap<String, BodyEntry>,
     regions: &BTreeMap<String, Region>,
 ) -> Result<Inlet> {
@@ -150,6 +162,7 @@ fn read(
     Ok(Inlet {
         bodies: fractions(&named, bodies)?,
         shares_by: table.read("shares_by")?,
+        sizes: table.read_by("sizes", |field| sizes(&field, &table, folder))?,
         region: table.need("region")?.reference(regions.keys(), "regions")?,
         rate: rate(&table)?,
         velocity_m_s: table.read("velocity")?,
@@ -161,6 +174,18 @@ fn read(
         end_s,
         count: table.read("count")?,
     })
+}
+
+/// The sieve curve in a file.
+fn sizes(field: &Field<'_>, inlet: &Table<'_>, folder: &Path) -> Result<FeedSizes> {
+    let by = inlet.get("shares_by");
+    if let (Some(by), SharesBy::Number) = (by, inlet.read("shares_by")?) {
+        let problem = "is \"number\", but a sieve curve is by mass";
+        return Err(by.fault(problem, "remove it, or write shares_by = \"mass\""));
+    }
+    let file = named_path(field, folder)?;
+    let curve = sieve_curve::read(&file.display().to_string())?;
+    Ok(FeedSizes { file, curve })
 }
 
 /// `["a", "b"]`, or `{ a = 0.7, b = 0.3 }`.

@@ -14,9 +14,9 @@ use super::targets::Targets;
 use super::test::Test;
 use super::tree::{Document, option_place};
 use super::{
-    body, bond, clusters, contact, contact_beside_bond, fall_check, group, initial, inlet, load,
-    material, measure, outlet, output, region, relaxation, replacement, run, search, sleep,
-    support, test, wall, zone_check,
+    body, bond, clusters, contact, contact_beside_bond, fall_check, feed_sizes, group, initial,
+    inlet, load, material, measure, outlet, output, region, relaxation, replacement, run, search,
+    sleep, support, test, wall, zone_check,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -55,10 +55,11 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let materials = each(&root, "materials", material::read)?;
     let bonds = each(&root, "bonds", bond::read)?;
     let regions = each(&root, "regions", |field| region::read(field, folder))?;
-    let bodies = body::read_all(&root, &materials, &bonds, &regions, folder)?;
+    let mut bodies = body::read_all(&root, &materials, &bonds, &regions, folder)?;
     let contacts = contact::read_all(&root, &materials)?;
-    let replacement = replacement::read_all(&root, &bodies, &materials, &regions)?;
-    let inlets = inlet::read_all(&root, &bodies, &regions, &replacement)?;
+    let mut replacement = replacement::read_all(&root, &bodies, &materials, &regions)?;
+    let mut inlets = inlet::read_all(&root, folder, &bodies, &regions, &replacement)?;
+    feed_sizes::expand(&root, &mut inlets, &mut bodies, &mut replacement)?;
     let outlets = each(&root, "outlets", |field| {
         outlet::read(field, &regions, &inlets)
     })?;

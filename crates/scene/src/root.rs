@@ -1,10 +1,10 @@
 //! A complete scene, and its tables.
 
 use super::schema::{Kind, table_schema};
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
-use super::body::BodyEntry;
+use super::body::{BodyEntry, BodySource};
 use super::bond::BondKind;
 use super::clusters::Clusters;
 use super::contact::Contact;
@@ -90,6 +90,26 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Names of the bodies that it declares: those that are fed in several sizes once.
+    pub fn declared_bodies(&self) -> BTreeSet<&str> {
+        let bodies = self.bodies.iter();
+        bodies
+            .map(|(own, entry)| entry.class_of.as_ref().unwrap_or(own).as_str())
+            .collect()
+    }
+
+    /// Gives a body another file, in all its sizes. False: there is no such body.
+    pub fn set_body_file(&mut self, name: &str, file: &Path) -> bool {
+        let mut found = false;
+        for (own, entry) in &mut self.bodies {
+            if entry.class_of.as_ref().unwrap_or(own) == name {
+                entry.source = BodySource::File(file.to_owned());
+                found = true;
+            }
+        }
+        found
+    }
+
     /// The body whose daughters a body is: see [`Replacement::daughters`]. None: it is none.
     pub fn parent_of(&self, body: &str) -> Option<&String> {
         replacement::parent_of(body, &self.replacement)

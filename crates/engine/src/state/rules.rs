@@ -112,6 +112,8 @@ pub struct ByLaw {
     /// Exponent of the damage by impacts that do not break: see [`dem_physics::breakage::damage`].
     /// None: there is none.
     pub damage_exponent: Option<f64>,
+    /// t10 at which a particle breaks while its contacts still press harder.
+    pub at_once_from_t10: f64,
 }
 
 /// A size class of daughters.

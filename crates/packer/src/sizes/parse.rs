@@ -1,6 +1,6 @@
 //! The sizes as typed -> a law with checked numbers, in metres.
 
-use super::sieve::{self, SieveCurve};
+use dem_io::sieve_curve::{self, SieveCurve};
 use dem_io::units::{length_m, show_length};
 use dem_io::{Diagnostic, Result};
 use std::ops::RangeInclusive;
@@ -76,8 +76,8 @@ pub(super) fn law(text: &str) -> Result<Law> {
             Ok(Law::Lognormal { mean, std, cut })
         }
         "weibull" | "rosin-rammler" => weibull(rest),
-        "sieve" => sieve::read(rest.trim()).map(Law::Sieve),
-        _ if text.to_ascii_lowercase().ends_with(".csv") => sieve::read(text).map(Law::Sieve),
+        "sieve" => sieve_curve::read(rest.trim()).map(Law::Sieve),
+        _ if text.to_ascii_lowercase().ends_with(".csv") => sieve_curve::read(text).map(Law::Sieve),
         "" if text.contains("..") => law(&format!("uniform:{text}")),
         "" => diameter(text).map(Law::One),
         unknown => Err(Diagnostic::input(

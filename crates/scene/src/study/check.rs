@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use super::contents::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
 use super::values::in_si;
 use crate::blame::guilty;
-use crate::body::BodySource;
 use crate::measure::Measure;
 use crate::names::suggestion;
 use crate::read::scene_from_text;
@@ -46,14 +45,6 @@ pub fn scene_with<'a>(
         }
     })?;
     for (body, setting) in files {
-        let names: Vec<String> = scene.bodies.keys().cloned().collect();
-        let Some(entry) = scene.bodies.get_mut(body) else {
-            return Err(Diagnostic::input(
-                &setting.place,
-                format!("the scene {name} has no body '{body}'"),
-                suggestion(body, names.iter().map(String::as_str)),
-            ));
-        };
         let path = PathBuf::from(&setting.value);
         let parts = dem_io::body::files::body_files(&path);
         let parts = parts.map_err(|error| error.within(&setting.place))?;
@@ -64,7 +55,13 @@ pub fn scene_with<'a>(
                 "make it with dem-pack, or correct the name, which counts from the study's folder",
             ));
         }
-        entry.source = BodySource::File(path);
+        if !scene.set_body_file(body, &path) {
+            return Err(Diagnostic::input(
+                &setting.place,
+                format!("the scene {name} has no body '{body}'"),
+                suggestion(body, scene.declared_bodies().into_iter()),
+            ));
+        }
     }
     Ok(scene)
 }

@@ -162,6 +162,26 @@ fn daughters() {
 }
 
 #[test]
+fn a_sieve_curve_stands_for_bodies_of_its_sizes() {
+    let scene = good("breakage.toml");
+    let feed = &scene.inlets["feed"];
+    let names: Vec<&str> = feed.bodies.iter().map(|(name, _)| name.as_str()).collect();
+    // Nothing lies between 22.4 mm and 31.5 mm.
+    assert_eq!(names, ["ore-16-22_4mm", "ore-31_5-45mm"]);
+    let shares: Vec<f64> = feed.bodies.iter().map(|(_, share)| *share).collect();
+    assert!((shares[0] - 0.25).abs() < 1e-15 && (shares[1] - 0.75).abs() < 1e-15);
+    assert_eq!(feed.shares_by, SharesBy::Mass);
+    let sizes = names
+        .iter()
+        .map(|name| scene.bodies[*name].sieve_size_m.unwrap());
+    for (size_m, [from, to]) in sizes.into_iter().zip([[16.0_f64, 22.4], [31.5, 45.0]]) {
+        assert!((size_m - 1e-3 * (from * to).sqrt()).abs() < 1e-15);
+    }
+    assert!(!scene.bodies.contains_key("ore") && !scene.replacement.contains_key("ore"));
+    assert!(scene.replacement["ore-31_5-45mm"].breakage.is_some());
+}
+
+#[test]
 fn inlets_and_outlets() {
     let scene = good("clumps-and-feed.toml");
     assert_eq!(
@@ -169,6 +189,7 @@ fn inlets_and_outlets() {
         Inlet {
             bodies: vec![("rock".to_owned(), 3.0), ("cake".to_owned(), 0.5)],
             shares_by: SharesBy::Mass,
+            sizes: None,
             region: "gate".to_owned(),
             rate: FeedRate::Number(4.0),
             velocity_m_s: [3.0, 0.0, 0.0],
@@ -187,6 +208,7 @@ fn inlets_and_outlets() {
     let usual = Inlet {
         bodies: vec![("cake".to_owned(), 1.0)],
         shares_by: SharesBy::Number,
+        sizes: None,
         region: "gate".to_owned(),
         rate: second.rate,
         velocity_m_s: [0.0; 3],

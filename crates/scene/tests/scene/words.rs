@@ -26,6 +26,7 @@ materials.clay.young_modulus    none
 materials.clay.poisson_ratio    0.3
 bodies.block.file               block.vtp
 bodies.block.material           clay
+bodies.block.sieve_size         the size of its file
 bodies.block.mass               that of its particles
 bodies.block.bonds              none
 bodies.block.position           [0, 0, 0] m

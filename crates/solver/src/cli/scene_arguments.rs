@@ -91,11 +91,10 @@ impl SceneArguments {
 
 /// Sets a body's file from an option `[NAME=]FILE`. Returns the body's name.
 fn set_body(scene: &mut Scene, option: &str) -> Result<String> {
-    let only = (scene.bodies.len() == 1).then(|| scene.bodies.keys().next());
-    let (name, file) = named_body(scene, option, only.flatten().map(String::as_str))?;
-    if let Some(entry) = scene.bodies.get_mut(&name) {
-        entry.source = BodySource::File(file);
-    }
+    let declared = scene.declared_bodies();
+    let only = (declared.len() == 1).then(|| declared.first().copied());
+    let (name, file) = named_body(scene, option, only.flatten())?;
+    scene.set_body_file(&name, &file);
     Ok(name)
 }
 
@@ -110,7 +109,7 @@ pub(super) fn named_body(
         None => (usual, option),
     };
     let place = || format!("--body {option}");
-    let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
+    let names: Vec<&str> = scene.declared_bodies().into_iter().collect();
     let (problem, remedy) = match name {
         _ if file.is_empty() => (
             "no file is named".to_owned(),

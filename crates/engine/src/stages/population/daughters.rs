@@ -17,7 +17,7 @@ use crate::state::State;
 use crate::state::clumps::{Clump, SubSphere, Template, sphere_volume_m3};
 use crate::state::events::{BrokenInto, PopulationEvent, TopologyChange};
 use crate::state::population::FragmentTemplate;
-use crate::state::rules::{ByLaw, DaughterRule, SizeClass};
+use crate::state::rules::{DaughterRule, SizeClass};
 use dem_io::random::hash;
 use dem_physics::bond::scatter::{body_key, strength_factor};
 use dem_physics::breakage::daughters::{arranged_m, diameters_m};
@@ -110,10 +110,11 @@ fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Into, f
         return None;
     }
     let specific_j_kg = energy_j / template.mass_kg;
-    if let Some(ByLaw { law, .. }) = &rule.by_law {
+    if let Some(by_law) = &rule.by_law {
+        let law = &by_law.law;
         let fracture_j_kg = fracture_energy_j_kg(clump, template, law, state.model.rules.seed);
         let t10 = law.t10(template.size_m(), specific_j_kg, fracture_j_kg);
-        let is_certain = law.is_crushed(t10) || !intake.grows();
+        let is_certain = t10 >= by_law.at_once_from_t10 || !intake.grows();
         return (t10 > 0.0 && is_certain).then_some((Into::Law(t10), specific_j_kg));
     }
     let factor = rule.weibull_modulus.map_or(1.0, |modulus| {

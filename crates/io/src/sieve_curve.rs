@@ -5,8 +5,9 @@
 //! by the header (`%`, `percent`, `fraction`), or else by whether a value exceeds 1. Coarsest or
 //! finest first; `#` begins a comment; with semicolons a decimal comma is accepted.
 
-use dem_io::units::{length_m, length_unit_m, significant};
-use dem_io::{Diagnostic, Result, read_input};
+use crate::diagnostic::{Diagnostic, Result};
+use crate::input_file::read_input;
+use crate::units::{length_m, length_unit_m, significant};
 use std::path::Path;
 
 /// Largest gap at 0 or 100 % of a curve that is still stretched to the full range.
@@ -32,7 +33,10 @@ struct Row {
 }
 
 /// The curve in a file.
-pub(super) fn read(path: &str) -> Result<SieveCurve> {
+///
+/// # Errors
+/// A file that cannot be read, or that is no cumulative curve.
+pub fn read(path: &str) -> Result<SieveCurve> {
     let bytes = read_input(Path::new(path), "a sieve curve").map_err(|mut error| {
         error.problem = format!("cannot read the sieve curve: {}", error.problem);
         error.remedy = "give the path of a text file of openings and passing".to_owned();
@@ -53,6 +57,9 @@ fn at(line: usize, problem: String, remedy: &str) -> Diagnostic {
 }
 
 /// The sieve curve in a text.
+///
+/// # Errors
+/// A text that is no cumulative curve.
 pub fn parse(text: &str) -> Result<SieveCurve> {
     let lines: Vec<(usize, &str)> = (1..)
         .zip(text.trim_start_matches('\u{feff}').lines())
