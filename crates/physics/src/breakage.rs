@@ -24,6 +24,8 @@ use serde::{Deserialize, Serialize};
 
 pub mod daughters;
 
+/// t10 below which a particle does not break: what it would lose are chips, which break none.
+pub const SMALLEST_T10: f64 = 0.01;
 /// Once t10 is this part of its largest value, more energy hardly makes finer pieces.
 const NEARLY_ALL: f64 = 0.9;
 /// Standard deviations on each side over which scatter is averaged, and their parts.

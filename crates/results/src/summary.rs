@@ -6,6 +6,7 @@ mod contents;
 mod equilibrium;
 mod inputs;
 mod measured;
+mod named;
 mod parts;
 mod short;
 mod sizes;
@@ -16,6 +17,7 @@ pub use contents::{COARSE, Summary, Trust, Unfinished, Verdict};
 pub use equilibrium::EquilibriumSummary;
 pub use inputs::{InputBody, InputFile, Inputs};
 pub use measured::Measured;
+pub use named::RUN_RESULTS;
 pub use parts::{
     AdaptiveSummary, BodyFlow, FragmentSummary, OutletSummary, PartError, PopulationSummary,
     SleepSummary, TakenIn,

@@ -46,6 +46,23 @@ pub const STRAIN_RATE: &str = "strain rate";
 /// Strength over the static one.
 pub const INCREASE_FACTOR: &str = "dynamic increase factor";
 
+/// Names of the results of dynamic tests that a body can be calibrated to; each test has some of
+/// them.
+pub const DYNAMIC_RESULTS: [&str; 12] = [
+    STRENGTH,
+    FAILURE_FORCE,
+    LARGEST_FORCE,
+    LARGEST_STRESS,
+    STRAIN_RATE,
+    INCREASE_FACTOR,
+    "contact duration",
+    "absorbed energy",
+    "specific absorbed energy",
+    "rebound velocity",
+    "largest fragment",
+    T10,
+];
+
 /// Evaluates a dynamic test: its figures are those of its bars or its weight, and its travel has no
 /// play.
 pub fn evaluate_dynamic(evidence: &TestInput<'_>) -> TestResult {

@@ -87,7 +87,7 @@ fn about_centre_of_mass(places: &mut [Vector3<f64>], radii_m: &[f64], ball_m: f6
     for (place, radius_m) in places.iter_mut().zip(radii_m) {
         *place -= centre;
         let far_m = place.norm();
-        if far_m + radius_m > ball_m {
+        if far_m > 0.0 && far_m + radius_m > ball_m {
             factor = factor.min((ball_m - radius_m).max(0.0) / far_m);
         }
     }
@@ -161,5 +161,7 @@ mod tests {
             }
         }
         assert_ne!(arranged_m(&radii_m, 10e-3, 8), places);
+        // One that the ball has no room for stays at its centre.
+        assert_eq!(arranged_m(&[9e-3], 8e-3, 1), [nalgebra::Vector3::zeros()]);
     }
 }

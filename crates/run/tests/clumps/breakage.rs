@@ -16,7 +16,7 @@ const RADIUS_M: f64 = 5e-3;
 const DENSITY_KG_M3: f64 = 2500.0;
 const LAW: BreakageLaw = BreakageLaw {
     largest_t10: 0.6,
-    b_kg_j: 0.02,
+    b_kg_j: 0.2,
     fracture_energy_j_kg: 3.0,
     energy_scatter: 0.0,
     reference_size_m: 20e-3,
@@ -42,7 +42,7 @@ replacement.ball.breakage = {{ {rule} }}
 density = {DENSITY_KG_M3}
 young_modulus = 1e8
 poisson_ratio = 0.25
-breakage = {{ largest_t10 = 0.6, b = 0.02, fracture_energy = 3, energy_scatter = {scatter}, reference_size = 20e-3, b_exponent = 0.5, energy_exponent = 1, family_exponent = 0.87 }}
+breakage = {{ largest_t10 = 0.6, b = 0.2, fracture_energy = 3, energy_scatter = {scatter}, reference_size = 20e-3, b_exponent = 0.5, energy_exponent = 1, family_exponent = 0.87 }}
 [bodies.ball]
 particles = [[0, 0, 0, {RADIUS_M}]]
 material = \"ore\"

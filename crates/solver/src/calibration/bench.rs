@@ -135,7 +135,10 @@ impl Bench<'_> {
         let result = |unknown: &Unknown| {
             let of_test = test.and_then(|test| test.figure(&unknown.result));
             let measure = measures().find(|measure| measure.name == unknown.result);
-            let value = of_test.or(measure.map(|measure| measure.value));
+            let of_run = || summary.run_result(&unknown.result).map(|(value, _)| value);
+            let value = of_test
+                .or(measure.map(|measure| measure.value))
+                .or_else(of_run);
             value.filter(|value| value.is_finite() && *value > 0.0)
         };
         Trial {

@@ -7,6 +7,8 @@ use dem_laboratory::TestType;
 use dem_scene::{Scene, Test, written_value};
 
 use dem_laboratory::test_result::STIFFNESS;
+use dem_results::summary::RUN_RESULTS;
+use dem_rig::dynamic::DYNAMIC_RESULTS;
 use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STRENGTH};
 
 /// Largest deviation of the mean modulus from its target.
@@ -131,17 +133,17 @@ impl Chooser<'_> {
                 return Err(Diagnostic::input(place(), problem, remedy));
             };
             let measures = self.scene.measures.keys().map(String::as_str);
-            let of_test = RESULTS
-                .iter()
-                .copied()
-                .filter(|_| self.scene.test.is_some());
-            let known: Vec<&str> = measures.chain(of_test).collect();
+            let of_test = match &self.scene.test {
+                None => &[][..],
+                Some(test) if test.kind.is_dynamic() => &DYNAMIC_RESULTS,
+                Some(_) => &RESULTS,
+            };
+            let known: Vec<&str> = (measures.chain(of_test.iter().copied()))
+                .chain(RUN_RESULTS)
+                .collect();
             if !known.contains(&result) {
                 let problem = format!("the scene has no measure or test result '{result}'");
-                let remedy = match known.is_empty() {
-                    true => "add it to [measures]".to_owned(),
-                    false => format!("use one of {}", known.join(", ")),
-                };
+                let remedy = format!("use one of {}", known.join(", "));
                 return Err(Diagnostic::input(place(), problem, remedy));
             }
             return Ok(Unknown {

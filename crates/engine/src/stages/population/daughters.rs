@@ -20,6 +20,7 @@ use crate::state::population::FragmentTemplate;
 use crate::state::rules::{DaughterRule, SizeClass};
 use dem_io::random::hash;
 use dem_physics::bond::scatter::{body_key, strength_factor};
+use dem_physics::breakage::SMALLEST_T10;
 use dem_physics::breakage::daughters::{arranged_m, diameters_m};
 use dem_physics::rotation::{numbers, rotation};
 use dem_physics::shape::packing_fit::fit;
@@ -115,7 +116,7 @@ fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Into, f
         let fracture_j_kg = fracture_energy_j_kg(clump, template, law, state.model.rules.seed);
         let t10 = law.t10(template.size_m(), specific_j_kg, fracture_j_kg);
         let is_certain = t10 >= by_law.at_once_from_t10 || !intake.grows();
-        return (t10 > 0.0 && is_certain).then_some((Into::Law(t10), specific_j_kg));
+        return (t10 >= SMALLEST_T10 && is_certain).then_some((Into::Law(t10), specific_j_kg));
     }
     let factor = rule.weibull_modulus.map_or(1.0, |modulus| {
         let particle = [u64::from(clump.first_id); 2];
