@@ -4,6 +4,7 @@ mod bulk;
 mod contacts;
 mod heaps;
 mod refused;
+mod swinging;
 mod utilisation;
 mod whole;
 

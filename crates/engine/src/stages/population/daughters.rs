@@ -26,6 +26,10 @@ use dem_physics::rotation::{numbers, rotation};
 use dem_physics::shape::packing_fit::fit;
 use std::sync::Arc;
 
+/// Radius of the ball in which daughters by a law are packed, over that of the particle, at least:
+/// in less room their centres would meet.
+const LEAST_BALL: f64 = 0.6;
+
 /// A particle that daughters replace in this step.
 struct Due {
     /// Number of the clump.
@@ -265,7 +269,8 @@ fn daughters_of(parent: &Clump, into: Into, state: &mut State) -> Daughters {
         (Into::Class(number), _) => number,
         (Into::Law(t10), Some(by_law)) => {
             let seed = hash(state.model.rules.seed, [u64::from(parent.first_id)]);
-            let ball_m = 0.5 * template.size_m() - deepest_m(state, parent);
+            let radius_m = 0.5 * template.size_m();
+            let ball_m = (radius_m - deepest_m(state, parent)).max(LEAST_BALL * radius_m);
             let diameters_m = diameters_m(
                 by_law.law.family_exponent,
                 t10,
