@@ -39,12 +39,13 @@ pub fn diameters_m(family_exponent: f64, t10: f64, size_m: f64, smallest_m: f64)
 /// centre of mass: moved apart from random places until they overlap little for the room there is.
 /// They may reach out of the ball by a seventh of its radius. `seed` decides on the places.
 pub fn arranged_m(radii_m: &[f64], ball_m: f64, seed: u64) -> Vec<Vector3<f64>> {
+    let room_m = |radius_m: f64| (ball_m - radius_m).max(LEAST_ROOM * ball_m);
     let start = |(n, radius_m): (usize, &f64)| {
         let [u, v, w] = [0, 1, 2].map(|which| uniform(seed, &[n as u64, which]));
         let height = 2.0 * u - 1.0;
         let across = (1.0 - height * height).sqrt();
         let turn = std::f64::consts::TAU * v;
-        (ball_m - radius_m).max(0.0)
+        room_m(*radius_m)
             * w.cbrt()
             * Vector3::new(across * turn.cos(), across * turn.sin(), height)
     };
@@ -52,7 +53,7 @@ pub fn arranged_m(radii_m: &[f64], ball_m: f64, seed: u64) -> Vec<Vector3<f64>> 
     for _ in 0..ROUNDS {
         move_apart(&mut places, radii_m);
         for (place, radius_m) in places.iter_mut().zip(radii_m) {
-            let most_m = (ball_m - radius_m).max(LEAST_ROOM * ball_m);
+            let most_m = room_m(*radius_m);
             let far_m = place.norm();
             if far_m > most_m {
                 *place *= most_m / far_m;
@@ -126,7 +127,13 @@ mod tests {
 
     #[test]
     fn daughters_lie_within_the_particle_about_its_centre_and_apart() {
-        for (t10, smallest_m) in [(0.02, 2e-3), (0.05, 4e-3), (0.3, 2e-3), (0.6, 1e-3)] {
+        for (t10, smallest_m) in [
+            (0.02, 2e-3),
+            (0.02, 10e-3),
+            (0.05, 4e-3),
+            (0.3, 2e-3),
+            (0.6, 1e-3),
+        ] {
             // The ball is smaller than the particle where something presses into it.
             for (seed, ball_m) in [(1, 10e-3), (2, 9.5e-3), (3, 8e-3), (4, 6e-3)] {
                 let diameters_m = diameters_m(0.87, t10, 20e-3, smallest_m);

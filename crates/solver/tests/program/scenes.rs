@@ -144,7 +144,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 44] = [
+const SHORT: [[&str; 4]; 45] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -165,6 +165,7 @@ const SHORT: [[&str; 4]; 44] = [
     ["hopkinson-pressure", "40 us", "", ""],
     ["hopkinson-tension", "60 us", "", ""],
     ["jaw-crusher", "0.1 s", "", ""],
+    ["jaw-crusher-ore", "0.3 s", "", ""],
     ["lifted-cylinder", "30 ms", "", ""],
     ["lumps", "0.1 s", "", ""],
     ["one-cake", "60 ms", "", ""],
