@@ -1,4 +1,7 @@
-//! `dem-run lab`: measured force-displacement curves to modulus, strength and mean curve.
+//! `dem-run lab`: measured force-displacement curves to modulus, strength and mean curve, and
+//! drop-weight tests to a law of breakage.
+
+mod drop_weight;
 
 use std::path::{Path, PathBuf};
 
@@ -18,16 +21,22 @@ use serde_json::json;
 
 #[derive(Debug, Args)]
 pub(super) struct LabArguments {
-    /// Files of the test rig, one for each specimen: CSV or text with columns of travel and force
+    /// Files of the test rig, one for each specimen: CSV or text with columns of travel and force;
+    /// of drop-weight, sheets of one ore with columns of size, energy and t10
     #[arg(value_name = "FILE", required_unless_present = "specimens")]
     files: Vec<PathBuf>,
     /// Type of test: four-point-bending, three-point-bending, brazilian-disc, compression, tension,
-    /// dog-bone
+    /// dog-bone, drop-weight
     #[arg(long = "type", value_name = "TYPE")]
     test: String,
-    /// File to write; a page of the same name, ending in .html, is written with it
-    #[arg(long, short, value_name = "FILE", default_value = "measured.json")]
-    output: PathBuf,
+    /// File to write, measured.json unless given, or ore.toml of drop-weight; a page of the same
+    /// name, ending in .html, is written with it
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Material of drop-weight tests in the file that scenes include; the name of that file unless
+    /// given
+    #[arg(long, value_name = "NAME")]
+    material: Option<String>,
 
     /// Distance of the supports of a beam, such as 180mm
     #[arg(long, value_name = "LENGTH", help_heading = "Specimens")]
@@ -81,14 +90,22 @@ pub(super) struct LabArguments {
 /// Reads and evaluates the curves, writes the measured material and its page, and prints a summary.
 /// No valid specimen is an error, once the page is written.
 pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
+    if arguments.test == drop_weight::TYPE {
+        return drop_weight::ore(arguments);
+    }
     let test = arguments.test_type()?;
     let dimensions = arguments.dimensions()?;
     let listed = arguments.listed()?;
-    let page_file = arguments.page_file()?;
-    need_folder_of(&arguments.output)?;
+    let output = arguments.output("measured.json");
+    let page_file = page_file(&output, "write the material to a name that ends in .json")?;
+    if arguments.material.is_some() {
+        let problem = format!("does not go with {}", arguments.test);
+        let remedy = "leave it out: a measured material has no name";
+        return Err(Diagnostic::input("--material", problem, remedy));
+    }
     let curves = listed.iter().map(|one| one.file.clone());
     let inputs: Vec<PathBuf> = curves.chain(arguments.specimens.clone()).collect();
-    refuse_to_replace(&[arguments.output.clone(), page_file.clone()], &inputs)?;
+    refuse_to_replace(&[output.clone(), page_file.clone()], &inputs)?;
     let measured: Vec<MeasuredSpecimen> = listed
         .iter()
         .map(|one| arguments.measured(one, test, &dimensions))
@@ -114,13 +131,13 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
         let remedy = format!("see {}", visible(&page_file.display().to_string()));
         return Err(Diagnostic::input("", problem, remedy));
     };
-    write_material(&arguments.output, &found)?;
+    write_material(&output, &found)?;
     if arguments.json {
         write_standard_json(&summary(&found, &evaluated))
     } else if arguments.quiet {
         Ok(())
     } else {
-        print(&found, &evaluated, &arguments.output, &page_file)
+        print(&found, &evaluated, &output, &page_file)
     }
 }
 
@@ -132,22 +149,17 @@ impl LabArguments {
             .filter(|(_, test)| !test.is_dynamic() && !test.has_residual());
         let found = known.clone().find(|(name, _)| *name == self.test);
         found.map(|(_, test)| *test).ok_or_else(|| {
-            let names: Vec<&str> = known.by_ref().map(|(name, _)| *name).collect();
+            let names = known.by_ref().map(|(name, _)| *name);
+            let names: Vec<&str> = names.chain([drop_weight::TYPE]).collect();
             let names = names.join(", ");
             let problem = format!("'{}' is not a type of test", self.test.escape_debug());
             Diagnostic::input("--type", problem, format!("use one of {names}"))
         })
     }
 
-    /// The page beside the output.
-    fn page_file(&self) -> Result<PathBuf> {
-        let page_file = self.output.with_extension("html");
-        if page_file == self.output {
-            let problem = format!("{} is the name of the page", self.output.display());
-            let remedy = "write the material to a name that ends in .json";
-            return Err(Diagnostic::input("--output", problem, remedy));
-        }
-        Ok(page_file)
+    /// The file to write, this one unless given.
+    fn output(&self, usual: &str) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| PathBuf::from(usual))
     }
 
     /// The dimensions that the options give.
@@ -207,6 +219,17 @@ impl LabArguments {
             name,
         })
     }
+}
+
+/// The page beside the output, whose folder is there.
+fn page_file(output: &Path, remedy: &str) -> Result<PathBuf> {
+    let page_file = output.with_extension("html");
+    if page_file == output {
+        let problem = format!("{} is the name of the page", output.display());
+        return Err(Diagnostic::input("--output", problem, remedy));
+    }
+    need_folder_of(output)?;
+    Ok(page_file)
 }
 
 /// A specimen with what speaks against it.
