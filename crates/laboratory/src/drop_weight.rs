@@ -4,6 +4,7 @@
 //! and [`ore_page`].
 
 mod broken_fit;
+mod cells;
 mod columns;
 mod estimate;
 mod family_fit;
@@ -11,6 +12,7 @@ mod least_squares;
 mod ore;
 mod ore_page;
 mod ore_text;
+mod read;
 mod refused;
 mod shares;
 mod sheet;
@@ -22,8 +24,8 @@ pub use family_fit::{FamilyMisfit, USUAL_FAMILY_EXPONENT};
 pub use ore::{FittedOre, SizeResidual, fit_ore};
 pub use ore_page::{ore_page, ore_plots};
 pub use ore_text::{ore_numbers, ore_text};
-pub use sheet::{DropWeightSheets, DropWeightTest, read_sheets};
+pub use read::read_sheets;
+pub use sheet::{DropWeightSheets, DropWeightTest};
 pub use size::{SizeGroup, size_groups};
 
-/// J/kg of a kWh/t.
-pub const J_KG_OF_KWH_T: f64 = 3600.0;
+pub use crate::units::J_KG_OF_KWH_T;

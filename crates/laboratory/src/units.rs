@@ -2,6 +2,9 @@
 
 use dem_io::units::{Dimension, ENERGY_PER_MASS, FORCE, LENGTH, quantity};
 
+/// J/kg of a kWh/t.
+pub const J_KG_OF_KWH_T: f64 = 3600.0;
+
 /// Spellings of units of length beside those of scenes, in small letters, m.
 const LENGTHS: [(&str, f64); 17] = [
     ("inch", 0.0254),

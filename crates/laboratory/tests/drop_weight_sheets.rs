@@ -1,5 +1,6 @@
 //! Sheets as test houses write them, and wrong ones.
 
+use dem_io::random::uniform;
 use dem_laboratory::drop_weight::fit_ore;
 
 use crate::drop_weight::read;
@@ -34,7 +35,7 @@ fn sheets_of_many_kinds_give_the_same_tests() {
     assert!(wanted.notes.is_empty(), "{:?}", wanted.notes);
     let files = [
         text(
-            "Drop weight test 7\nJob;12/3\n\nParticle size;Specific energy;t_10;t_4;Particles;Broken\nmm;J/g;%;%;-;%",
+            "Drop weight test 7\nJob;12/3\n\nParticle size;Specific energy;t10 passing;t_4;Particles;Broken\nmm;J/g;%;%;-;%",
             |[x, e, t, u, n, k]| {
                 format!(
                     "{};{};{};{};{n};{}",
@@ -47,7 +48,7 @@ fn sheets_of_many_kinds_give_the_same_tests() {
             },
         ),
         text(
-            "t4\tt10\tbroken\tNumber of specimens\tEnergy [J/kg]\tSize [cm]\tRemark",
+            "t4\tt10\tbroken (-)\tNumber of specimens (-)\tEnergy [J/kg]\tSize [cm]\tRemark",
             |[x, e, t, u, n, k]| {
                 format!(
                     "{}\t{}\t{k}\t{n}\t{}\t{}\tok",
@@ -266,6 +267,14 @@ fn wrong_sheets_are_refused_with_one_message() {
             vec![with("size (mm)", "size").replace("\n30,", "\n0.03,")],
             "1.csv: line 2: the size is 0.03 without a unit, below 0.5 mm; write the unit behind the name: size (m)",
         ),
+        (
+            vec!["size (mm);Ecs (J/kg);t10 (%)\n30;360;10\n30;900;25\n30;2.500;45".to_owned()],
+            "1.csv: line 4: the energy is '2.500', which may be 2.500 or 2500: the file does not show which sign is the decimal one",
+        ),
+        (
+            vec![with("size (mm)", "size (m)")],
+            "1.csv: line 2: the size is 30000 mm, not between 0.01 mm and 10000 mm; check the unit of the size",
+        ),
         (vec![good.clone(), String::new()], "2.csv: has no 3 rows"),
     ];
     let cases = cases.into_iter().chain([(
@@ -292,4 +301,58 @@ fn wrong_sheets_are_refused_with_one_message() {
         );
         assert!(!said.contains('\n'), "{said}");
     }
+}
+
+/// Sheets with letters and digits exchanged, removed and doubled are read or refused; what is
+/// fitted to them is finite.
+#[test]
+fn damaged_sheets_are_read_or_refused() {
+    let whole = text(
+        "size (mm),Ecs (kWh/t),t10 (%),t4 (%),specimens,broken",
+        |[x, e, t, u, n, k]| format!("{x},{e},{t},{u},{n},{k}"),
+    );
+    let (mut fitted, mut refused) = (0, 0);
+    for seed in 0..400 {
+        let mut bytes = whole.clone().into_bytes();
+        for change in 0..1 + seed % 4 {
+            let at = (uniform(seed, &[change, 0]) * bytes.len() as f64) as usize;
+            let other = b"0123456789.,;-+e% \n"[(uniform(seed, &[change, 1]) * 19.0) as usize];
+            match (uniform(seed, &[change, 2]) * 3.0) as usize {
+                0 => bytes[at] = other,
+                1 => bytes.insert(at, other),
+                _ => drop(bytes.remove(at)),
+            }
+        }
+        let damaged = String::from_utf8(bytes).unwrap();
+        match read(&[&damaged]).and_then(|sheets| fit_ore(&sheets)) {
+            Ok(ore) => {
+                fitted += 1;
+                let law = ore.law;
+                let numbers = [
+                    law.largest_t10,
+                    law.b_kg_j,
+                    law.fracture_energy_j_kg,
+                    law.energy_scatter,
+                    law.b_exponent,
+                    law.energy_exponent,
+                    law.family_exponent,
+                    ore.rms,
+                ];
+                assert!(
+                    numbers.iter().all(|number| number.is_finite()),
+                    "{law:?}\n{damaged}"
+                );
+                assert!(
+                    law.largest_t10 <= 1.0 && law.b_kg_j > 0.0,
+                    "{law:?}\n{damaged}"
+                );
+            }
+            Err(error) => {
+                refused += 1;
+                assert_eq!(error.exit_code(), 2, "{error}");
+                assert!(!error.remedy.is_empty(), "{error}");
+            }
+        }
+    }
+    assert!(fitted > 40 && refused > 40, "{fitted} {refused}");
 }

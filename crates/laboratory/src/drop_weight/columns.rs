@@ -53,7 +53,7 @@ const SIEVES: [&str; 20] = [
     "min size",
 ];
 /// Names of a column of energies.
-const ENERGIES: [&str; 14] = [
+const ENERGIES: [&str; 16] = [
     "ecs",
     "eis",
     "e",
@@ -67,6 +67,8 @@ const ENERGIES: [&str; 14] = [
     "impact energy",
     "absorbed energy",
     "mean ecs",
+    "actual ecs",
+    "ecs actual",
     "energy over mass",
 ];
 /// Names of a column of numbers of specimens.
@@ -117,7 +119,7 @@ const ENDINGS: [(&str, &str); 14] = [
     ("um", "um"),
     ("percent", "%"),
     ("pct", "%"),
-    ("fraction", "-"),
+    ("fraction", "fraction"),
 ];
 
 /// The unit of shares.
@@ -210,7 +212,7 @@ impl SheetColumns {
             energy,
             energy_unit_j_kg: energy_unit(&heads[energy])?,
             specimens,
-            broken: broken.map(|column| (column, heads[column].share_unit())),
+            broken: broken.map(|column| (column, heads[column].broken_unit())),
             ore: ore.or(sample),
             is_sample: ore.is_none(),
             others: others.map(|column| heads[column].shown.clone()).collect(),
@@ -250,10 +252,10 @@ impl Head {
         }
     }
 
-    /// The n of a column `t10`, `t_10`, `t 10`.
+    /// The n of a column `t10`, `t_10`, `t10 passing`.
     fn n(&self) -> Option<f64> {
-        let number = self.name.strip_prefix('t')?.trim_start();
-        let n: f64 = number.parse().ok()?;
+        let mut words = self.name.strip_prefix('t')?.split_whitespace();
+        let n: f64 = words.next()?.parse().ok()?;
         (n > 1.0 && n.is_finite()).then_some(n)
     }
 
@@ -265,6 +267,14 @@ impl Head {
             ShareUnit::Fraction
         } else {
             ShareUnit::Unsaid
+        }
+    }
+
+    /// The unit of broken specimens: `-` is that of their number and of their share.
+    fn broken_unit(&self) -> ShareUnit {
+        match self.unit.as_str() {
+            "-" | "1" => ShareUnit::Unsaid,
+            _ => self.share_unit(),
         }
     }
 }

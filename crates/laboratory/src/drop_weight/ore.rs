@@ -5,7 +5,6 @@ use dem_io::{Diagnostic, Result};
 use dem_physics::breakage::BreakageLaw;
 use serde::Serialize;
 
-use super::J_KG_OF_KWH_T;
 use super::broken_fit::{BrokenFit, fit_broken};
 use super::estimate::Estimate;
 use super::family_fit::{FamilyMisfit, fit_family};
@@ -14,6 +13,7 @@ use super::sheet::{DropWeightSheets, DropWeightTest};
 use super::size::{SizeGroup, geometric_mean, size_groups};
 use super::t10_fit::{EnergyFrom, T10Data, T10Fit};
 use crate::student::{NORMAL, student_95};
+use crate::units::J_KG_OF_KWH_T;
 
 /// Sizes that differ by less than this factor in all say nothing of exponents.
 const SIZES_APART: f64 = 1.3;
@@ -161,9 +161,9 @@ fn broken(
     }
     match fit_broken(tests, reference_size_m, are_apart(sizes, SIZES_APART)) {
         Ok(mut fit) => {
-            let free = tests.iter().filter(|test| test.broken.is_some()).count() as f64;
+            let rows = tests.iter().filter(|test| test.broken.is_some()).count() as f64;
             if let Some(dispersion) = fit.dispersion
-                && dispersion > 1.0 + 3.0 * (2.0 / free).sqrt()
+                && dispersion > 1.0 + 3.0 * (2.0 / rows).sqrt()
             {
                 doubts.push(format!(
                     "numbers of broken specimens scatter {} times as much as by chance: their law, or a row, is off; the intervals allow for it",

@@ -2,14 +2,14 @@
 
 use dem_io::units::significant;
 use dem_physics::breakage::BreakageLaw;
-use dem_plots::{Column, Line, Marks, Page, Plot, Point, Table};
+use dem_plots::{Axis, Column, Line, Marks, Page, Plot, Point, Table};
 
-use super::J_KG_OF_KWH_T;
-use super::ore::FittedOre;
+use super::ore::{FittedOre, SizeResidual};
 use super::ore_text::{ore_numbers, shown_mm};
 use super::refused::{kwh_t, percent};
 use super::sheet::{DropWeightSheets, DropWeightTest};
 use super::size::{SizeGroup, size_groups};
+use crate::units::J_KG_OF_KWH_T;
 
 /// Points of a curve.
 const POINTS: u32 = 150;
@@ -25,7 +25,7 @@ pub fn ore_page(ore: &FittedOre, sheets: &DropWeightSheets, material: &str) -> S
         format!(" of {}", sheets.ore)
     };
     page.paragraph(&format!(
-        "Material {material}: {} tests{of} from {}; the law holds at a reference size of {}.",
+        "Material {material}: {} tests{of} from {}; b and the fracture energy are those of a size of {}.",
         sheets.tests.len(),
         sheets.files.join(", "),
         shown_mm(ore.law.reference_size_m)
@@ -69,7 +69,7 @@ fn residuals(ore: &FittedOre) -> Table {
         points(ore.rms),
         String::new(),
     ];
-    let row = |one: &super::SizeResidual| {
+    let row = |one: &SizeResidual| {
         let size = shown_mm(one.size_m);
         let [mean, rms] = [one.mean, one.rms].map(points);
         vec![size, one.tests.to_string(), mean, rms, product(one.size_m)].into()
@@ -273,16 +273,21 @@ fn family_plot(ore: &FittedOre, tests: &[DropWeightTest]) -> Plot {
 }
 
 fn broken_plot(law: &BreakageLaw, tests: &[DropWeightTest], groups: &[SizeGroup]) -> Plot {
-    let of_broken = |group: &SizeGroup| SizeGroup {
-        tests: (group.tests.iter().copied())
-            .filter(|at| tests[*at].broken.is_some())
-            .collect(),
-        ..group.clone()
-    };
+    // From half the least energy of the tests to twice the largest, in equal factors.
     let line = |group: &SizeGroup| {
-        let most_j_kg = largest_energy_j_kg(tests, &of_broken(group));
-        let share = |energy| 100.0 * law.broken_share(group.size_m, energy);
-        curve(shown_mm(group.size_m), most_j_kg, share)
+        let energies = group.tests.iter().filter(|at| tests[**at].broken.is_some());
+        let energies = energies.map(|at| tests[*at].energy_j_kg);
+        let [least, most] = energies.fold([f64::INFINITY, 0.0], |[least, most], energy| {
+            [energy.min(least), energy.max(most)]
+        });
+        let point = |at: u32| {
+            let part = f64::from(at) / f64::from(POINTS);
+            let energy_j_kg = 0.5 * least * (4.0 * most / least).powf(part);
+            let share = law.broken_share(group.size_m, energy_j_kg);
+            [energy_j_kg / J_KG_OF_KWH_T, 100.0 * share]
+        };
+        let points = (0..=POINTS).map(point).collect();
+        Line::new(shown_mm(group.size_m), points)
     };
     let points = |group: &SizeGroup| {
         marks(group.tests.iter().filter_map(|at| {
@@ -302,6 +307,7 @@ fn broken_plot(law: &BreakageLaw, tests: &[DropWeightTest], groups: &[SizeGroup]
     let lines = groups.iter().map(line).collect();
     Plot {
         marks: groups.iter().map(points).collect(),
-        ..Plot::of("Broken specimens", "energy (kWh/t)", "broken (%)", lines)
+        x: Axis::log("energy (kWh/t)"),
+        ..Plot::of("Broken specimens", "", "broken (%)", lines)
     }
 }

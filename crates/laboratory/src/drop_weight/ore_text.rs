@@ -3,11 +3,11 @@
 use dem_io::text::{counted, visible};
 use dem_io::units::significant;
 
-use super::J_KG_OF_KWH_T;
 use super::estimate::Estimate;
 use super::ore::FittedOre;
 use super::refused::percent;
 use super::sheet::DropWeightSheets;
+use crate::units::J_KG_OF_KWH_T;
 
 /// Digits of intervals and of numbers that a person reads.
 const SHOWN: usize = 3;

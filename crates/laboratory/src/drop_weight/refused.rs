@@ -4,15 +4,17 @@ use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use dem_physics::breakage::passing;
 
-use super::J_KG_OF_KWH_T;
 use super::family_fit::USUAL_FAMILY_EXPONENT;
 use super::sheet::DropWeightTest;
 use super::size::{SizeGroup, size_groups};
 use crate::fit::Line;
 use crate::student::student_95;
+use crate::units::J_KG_OF_KWH_T;
 
 /// Energies over mass of tests, J/kg: ores take 0.001 to 10 kWh/t.
 const ENERGIES_J_KG: [f64; 2] = [1e-4 * J_KG_OF_KWH_T, 100.0 * J_KG_OF_KWH_T];
+/// Sizes of specimens, m.
+const SIZES_M: [f64; 2] = [1e-5, 10.0];
 /// A step between neighbouring energies as between units: kWh/t are 3600 J/kg.
 const OTHER_UNIT: f64 = 50.0;
 /// Part of the largest t10 that a test at a fiftieth of the energy does not reach.
@@ -51,6 +53,12 @@ pub(super) fn impossible(test: &DropWeightTest) -> Result<()> {
             kwh_t(most)
         );
         return refuse(problem, "check the unit of the energy");
+    }
+    let [least, most] = SIZES_M.map(|size_m| significant(1e3 * size_m, 4));
+    if !(SIZES_M[0]..=SIZES_M[1]).contains(&test.size_m) {
+        let size_mm = significant(1e3 * test.size_m, 4);
+        let problem = format!("the size is {size_mm} mm, not between {least} mm and {most} mm");
+        return refuse(problem, "check the unit of the size");
     }
     let mut family: Vec<[f64; 2]> = test.family.clone();
     family.extend(test.t10.map(|t10| [10.0, t10]));

@@ -2,9 +2,12 @@
 
 use dem_io::{Diagnostic, Result};
 
+use super::cells::{line_of, missing};
 use super::columns::{Fineness, ShareUnit, SheetColumns};
-use super::sheet::{line_of, missing};
 use crate::table::Table;
+
+/// Most specimens of a row.
+const MOST_SPECIMENS: f64 = 1e6;
 
 /// A column of parts of the mass.
 pub(super) struct Shares {
@@ -135,8 +138,10 @@ pub(super) fn broken(table: &Table, columns: &SheetColumns) -> Result<Vec<Option
         };
         let count = counts[row].ok_or_else(|| missing(&place, "number of specimens"))?;
         let remedy = "correct this line";
-        if count < 1.0 || count.fract() != 0.0 {
-            let problem = format!("the number of specimens is {count}, not a whole number above 0");
+        if !(1.0..=MOST_SPECIMENS).contains(&count) || count.fract() != 0.0 {
+            let problem = format!(
+                "the number of specimens is {count}, not a whole number from 1 to {MOST_SPECIMENS}"
+            );
             return Err(Diagnostic::input(place, problem, remedy));
         }
         if let Some(share) = shares.get(row).copied().flatten() {

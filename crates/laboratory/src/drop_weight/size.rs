@@ -1,20 +1,9 @@
-//! Sizes of the specimens of a drop-weight test: sieve fractions, and groups of like sizes.
+//! Groups of drop-weight tests of like size.
 
 use super::sheet::DropWeightTest;
 
 /// Sizes that differ by less than this factor are one in plots, residuals and checks.
 const LIKE: f64 = 1.1;
-
-/// The numbers in a text such as `31.5 x 26.5`, `-31.5+26.5`, `26,5-31,5 mm`, and the unit behind
-/// them, which may be empty. Signs in it are those of sieves: `-` passing, `+` retained.
-pub(super) fn numbers_in(text: &str, decimal: char) -> (Vec<f64>, &str) {
-    let is_part = |c: char| c.is_ascii_digit() || c == decimal;
-    let end = text.rfind(is_part).map_or(0, |at| at + 1);
-    let (numbers, unit) = text.split_at(end);
-    let found = numbers.split(|c: char| !is_part(c));
-    let parsed = found.filter_map(|number| number.replace(decimal, ".").parse().ok());
-    (parsed.collect(), unit.trim())
-}
 
 /// Tests of like size.
 #[derive(Debug, Clone, PartialEq)]

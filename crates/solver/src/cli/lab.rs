@@ -19,6 +19,8 @@ use dem_laboratory::{
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use serde_json::json;
 
+use self::drop_weight::OreTask;
+
 #[derive(Debug, Args)]
 pub(super) struct LabArguments {
     /// Files of the test rig, one for each specimen: CSV or text with columns of travel and force;
@@ -91,7 +93,7 @@ pub(super) struct LabArguments {
 /// No valid specimen is an error, once the page is written.
 pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
     if arguments.test == drop_weight::TYPE {
-        return drop_weight::ore(arguments);
+        return fit_ore(arguments);
     }
     let test = arguments.test_type()?;
     let dimensions = arguments.dimensions()?;
@@ -139,6 +141,37 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
     } else {
         print(&found, &evaluated, &output, &page_file)
     }
+}
+
+/// Fits an ore to the sheets of its drop-weight tests; refuses options that only curves have.
+fn fit_ore(arguments: &LabArguments) -> Result<()> {
+    let given = [
+        ("--specimens", arguments.specimens.is_some()),
+        ("--support-span", arguments.support_span.is_some()),
+        ("--loading-span", arguments.loading_span.is_some()),
+        ("--width", arguments.width.is_some()),
+        ("--height", arguments.height.is_some()),
+        ("--length", arguments.length.is_some()),
+        ("--area", arguments.area.is_some()),
+        ("--travel-column", arguments.travel_column.is_some()),
+        ("--travel-unit", arguments.travel_unit.is_some()),
+        ("--force-column", arguments.force_column.is_some()),
+        ("--force-unit", arguments.force_unit.is_some()),
+    ];
+    if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        let problem = format!("does not go with {}", drop_weight::TYPE);
+        let remedy = "leave it out: the sheets give the sizes and units of their columns";
+        return Err(Diagnostic::input(*option, problem, remedy));
+    }
+    let output = arguments.output("ore.toml");
+    drop_weight::ore(&OreTask {
+        files: &arguments.files,
+        material: arguments.material.as_deref(),
+        page_file: &page_file(&output, "write the ore to a name that ends in .toml")?,
+        output: &output,
+        json: arguments.json,
+        quiet: arguments.quiet,
+    })
 }
 
 impl LabArguments {

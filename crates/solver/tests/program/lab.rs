@@ -238,7 +238,7 @@ fn drop_weight_tests_give_a_law_of_breakage() {
         (
             &["--width", "3mm"][..],
             "no.toml",
-            "error: --width does not go with drop-weight; leave it out",
+            "error: --width: does not go with drop-weight; leave it out",
         ),
         (
             &["--material", "a b"],
