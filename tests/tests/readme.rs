@@ -8,7 +8,7 @@ use std::process::Command;
 use super::{DEM_PACK, DEM_RUN, dem_pack, dem_run, root};
 
 /// The pages whose commands are run and whose options must exist.
-const PAGES: [&str; 22] = [
+const PAGES: [&str; 23] = [
     "README.md",
     "doc/README.md",
     "doc/tablet.md",
@@ -22,6 +22,7 @@ const PAGES: [&str; 22] = [
     "doc/running.md",
     "doc/calibration.md",
     "doc/measured-curves.md",
+    "doc/breakage.md",
     "doc/gallery.md",
     "doc/inside/development.md",
     "doc/bulk.md",

@@ -17,7 +17,7 @@ mod text;
 mod unknown;
 
 pub use case::{Case, End, Round, Start, Trial};
-pub use confidence::{half_width, student_95};
+pub use confidence::half_width;
 pub use page::{page, sizes};
 pub use record::{FORMAT_VERSION, Record, read_record, write_record};
 pub use resolution::{coarsest, curve_error};

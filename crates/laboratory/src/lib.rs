@@ -1,11 +1,12 @@
-//! Laboratory tests: closed forms, and what the force-displacement curves of a test rig say of a
-//! material.
+//! Laboratory tests: closed forms, what the force-displacement curves of a test rig say of a
+//! material, and what [drop-weight tests](drop_weight) say of an ore.
 //!
 //! Data flow: text of a file -> [`Table`] -> [`Curve`] -> [`Regions`] -> [`EvaluatedSpecimen`] ->
 //! [`MeasuredMaterial`], which scenes take as their target.
 
 mod area;
 mod curve;
+pub mod drop_weight;
 mod elastic;
 mod evaluation;
 pub mod figure;
@@ -21,6 +22,7 @@ mod page;
 mod regions;
 mod specimen;
 mod statistic;
+mod student;
 mod table;
 mod target;
 pub mod test_result;
@@ -41,5 +43,6 @@ pub use page::{page, regions_plot, statistics};
 pub use regions::Regions;
 pub use specimen::{Dimensions, Specimen, TestType};
 pub use statistic::Statistic;
+pub use student::student_95;
 pub use table::{Table, read_text};
 pub use target::{read_material, write_material};

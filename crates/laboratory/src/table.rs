@@ -13,6 +13,8 @@ use crate::numbers::{Content, Notation, Separator};
 const HEAD_LINES: usize = 4;
 /// Rows of numbers, one below the other, by which the table is known.
 const ROWS_OF_TABLE: usize = 3;
+/// What to do with a line that cannot be read.
+const CORRECT: &str = "correct or remove this line";
 
 /// Lines of cells.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,16 +74,23 @@ fn has_zeros(bytes: &[u8], place: usize) -> bool {
 type Cells<'a> = (usize, Vec<&'a str>);
 
 impl Table {
-    /// The table in a text; refuses one without rows of numbers.
+    /// The table in the text of a force-displacement curve; refuses one without rows of numbers.
     pub fn of(text: &str) -> Result<Self> {
+        Self::of_kind(
+            text,
+            "export travel and force as columns, a row for each moment",
+        )
+    }
+
+    /// The table in a text; refuses one without rows of numbers, with this remedy.
+    pub(crate) fn of_kind(text: &str, remedy: &str) -> Result<Self> {
         let lines = numbered(text);
         let contents: Vec<&str> = lines.iter().map(|(_, line)| *line).collect();
         let none = || {
-            Diagnostic::input(
-                "",
-                "has no rows with two numbers or more",
-                "export travel and force as columns, a row for each moment",
-            )
+            let problem = format!(
+                "has no {ROWS_OF_TABLE} rows with two numbers or more, one below the other"
+            );
+            Diagnostic::input("", problem, remedy)
         };
         let mut notation = Notation::found_in(&contents).ok_or_else(none)?;
         let rows: Vec<Cells<'_>> = lines
@@ -124,33 +133,52 @@ impl Table {
 
     /// The numbers of a column, called `what` in messages; refuses a row without one.
     pub fn numbers(&self, column: usize, what: &str) -> Result<Vec<f64>> {
-        let number = |(line, cells): &(usize, Vec<String>)| {
-            let width = self.columns.len();
-            if cells.iter().skip(width).any(|cell| !cell.is_empty()) {
-                let problem = format!("has {} cells, where {width} are usual", cells.len());
-                let remedy = "correct or remove this line";
-                return Err(Diagnostic::input(format!("line {line}"), problem, remedy));
-            }
-            let cell = cells.get(column).map_or("", String::as_str);
-            if self.notation.content(cell) == Content::Unclear {
-                return Err(self.unclear(*line, cell, what));
-            }
-            self.notation.number(cell).ok_or_else(|| {
-                let problem = match cell {
-                    "" => format!("the {what} is missing"),
-                    cell => format!("the {what} is '{}', not a number", cell.escape_debug()),
-                };
-                let remedy = "correct or remove this line";
-                Diagnostic::input(format!("line {line}"), problem, remedy)
+        self.refuse_mixed(column, what)?;
+        let number = |row: usize| {
+            self.number(row, column, what)?.ok_or_else(|| {
+                let place = format!("line {}", self.line(row));
+                let problem = format!("the {what} is missing");
+                Diagnostic::input(place, problem, CORRECT)
             })
         };
-        self.refuse_mixed(column, what)?;
-        self.rows.iter().map(number).collect()
+        (0..self.rows.len()).map(number).collect()
+    }
+
+    /// The number in a cell, called `what` in messages. None: the cell is empty.
+    pub(crate) fn number(&self, row: usize, column: usize, what: &str) -> Result<Option<f64>> {
+        let (line, cells) = &self.rows[row];
+        let width = self.columns.len();
+        if cells.iter().skip(width).any(|cell| !cell.is_empty()) {
+            let problem = format!("has {} cells, where {width} are usual", cells.len());
+            return Err(Diagnostic::input(format!("line {line}"), problem, CORRECT));
+        }
+        match (
+            self.cell(row, column),
+            self.notation.content(self.cell(row, column)),
+        ) {
+            ("", _) => Ok(None),
+            (_, Content::Number(value)) => Ok(Some(value)),
+            (cell, Content::Unclear) => Err(self.unclear(*line, cell, what)),
+            (cell, Content::Text) => {
+                let problem = format!("the {what} is '{}', not a number", cell.escape_debug());
+                Err(Diagnostic::input(format!("line {line}"), problem, CORRECT))
+            }
+        }
+    }
+
+    /// The text in a cell; empty where there is none.
+    pub(crate) fn cell(&self, row: usize, column: usize) -> &str {
+        self.rows[row].1.get(column).map_or("", String::as_str)
+    }
+
+    /// The decimal sign of its numbers.
+    pub(crate) fn decimal(&self) -> char {
+        self.notation.decimal
     }
 
     /// Refuses a column of whole numbers, the larger of which may have a sign between thousands:
     /// `998`, `999`, `1.000`.
-    fn refuse_mixed(&self, column: usize, what: &str) -> Result<()> {
+    pub(crate) fn refuse_mixed(&self, column: usize, what: &str) -> Result<()> {
         let notation = &self.notation;
         let cells = || {
             let rows = self.rows.iter();

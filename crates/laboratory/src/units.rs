@@ -1,6 +1,9 @@
 //! Units as test rigs write them.
 
-use dem_io::units::{Dimension, FORCE, LENGTH, quantity};
+use dem_io::units::{Dimension, ENERGY_PER_MASS, FORCE, LENGTH, quantity};
+
+/// J/kg of a kWh/t.
+pub const J_KG_OF_KWH_T: f64 = 3600.0;
 
 /// Spellings of units of length beside those of scenes, in small letters, m.
 const LENGTHS: [(&str, f64); 17] = [
@@ -48,6 +51,16 @@ const FORCES: [(&str, f64); 20] = [
     ("newtons", 1.0),
     ("kilonewton", 1e3),
     ("kilonewtons", 1e3),
+];
+/// Spellings of units of energy over mass beside those of scenes, in small letters, J/kg.
+const ENERGIES: [(&str, f64); 7] = [
+    ("j/g", 1e3),
+    ("mj/t", 1e3),
+    ("kwh/tonne", 3600.0),
+    ("kwh per t", 3600.0),
+    ("kwh per tonne", 3600.0),
+    ("j per kg", 1.0),
+    ("j per g", 1e3),
 ];
 /// Units of pounds that are masses as well.
 const POUNDS: [&str; 4] = ["lb", "lbs", "pound", "pounds"];
@@ -114,6 +127,7 @@ pub(crate) fn size_of(unit: &str, dimension: &Dimension) -> Option<f64> {
     let aliases: &[(&str, f64)] = match dimension.name {
         name if name == LENGTH.name => &LENGTHS,
         name if name == FORCE.name => &FORCES,
+        name if name == ENERGY_PER_MASS.name => &ENERGIES,
         _ => &[],
     };
     if let Some((_, size)) = aliases.iter().find(|(alias, _)| *alias == small) {
@@ -134,6 +148,8 @@ pub(crate) fn names_of(dimension: &Dimension) -> String {
         names.extend(["lbf", "kip", "kgf"]);
     } else if dimension.name == LENGTH.name {
         names.extend(["mil"]);
+    } else if dimension.name == ENERGY_PER_MASS.name {
+        names.extend(["J/g"]);
     }
     names.join(", ")
 }
@@ -150,5 +166,7 @@ pub(crate) fn is_travel_or_force(text: &str) -> bool {
 
 /// Whether a text is a unit of anything that a test rig records.
 pub(crate) fn is_unit(text: &str) -> bool {
-    is_travel_or_force(text) || OTHERS.contains(&text.trim().to_lowercase().as_str())
+    is_travel_or_force(text)
+        || size_of(text, &ENERGY_PER_MASS).is_some()
+        || OTHERS.contains(&text.trim().to_lowercase().as_str())
 }

@@ -246,11 +246,11 @@ fn damaged_files_have_one_clear_message() {
     let all_files = [
         (
             String::new(),
-            "has no rows with two numbers or more; export travel and force as columns, a row for each moment",
+            "has no 3 rows with two numbers or more, one below the other; export travel and force as columns, a row for each moment",
         ),
         (
             "travel and force\nwere lost\n".to_owned(),
-            "has no rows with two numbers or more; export travel and force as columns, a row for each moment",
+            "has no 3 rows with two numbers or more, one below the other; export travel and force as columns, a row for each moment",
         ),
         (
             lines[..12].join("\n"),

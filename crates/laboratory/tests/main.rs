@@ -2,6 +2,9 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod area;
+mod drop_weight;
+mod drop_weight_sheets;
 mod files;
+mod student;
 mod synthetic;
 mod theory;

@@ -152,11 +152,14 @@ pub(super) enum Command {
     /// Read what LAMMPS computed from an exported scene, as results of a run: frames and page
     #[command(after_help = "Example:\n  dem-run import bar -o bar-results")]
     Import(ImportArguments),
-    /// Evaluate measured force-displacement curves: modulus, strength, mean curve
+    /// Evaluate laboratory tests: force-displacement curves to modulus, strength and mean curve,
+    /// sheets of drop-weight tests to the law by which an ore breaks
     #[command(
         after_help = "Finds in each curve the offset of the load cell, the seating and the linear part; leaves out specimens in doubt, and says why.\n\
-                      Example:\n  \
-                      dem-run lab a.csv b.csv c.csv --type four-point-bending --support-span 180mm --loading-span 80mm --width 30mm --height 35mm"
+                      Of drop-weight tests it fits A, b, the fracture energy, the exponents of size and that of the family, with confidence intervals.\n\
+                      Examples:\n  \
+                      dem-run lab a.csv b.csv c.csv --type four-point-bending --support-span 180mm --loading-span 80mm --width 30mm --height 35mm\n  \
+                      dem-run lab sheet.csv --type drop-weight --material ore --output ore.toml"
     )]
     Lab(Box<LabArguments>),
     /// Find modulus and strength of bonds with which the mean test of several packings gives the

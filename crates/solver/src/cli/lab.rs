@@ -1,4 +1,7 @@
-//! `dem-run lab`: measured force-displacement curves to modulus, strength and mean curve.
+//! `dem-run lab`: measured force-displacement curves to modulus, strength and mean curve, and
+//! drop-weight tests to a law of breakage.
+
+mod drop_weight;
 
 use std::path::{Path, PathBuf};
 
@@ -16,18 +19,26 @@ use dem_laboratory::{
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use serde_json::json;
 
+use self::drop_weight::OreTask;
+
 #[derive(Debug, Args)]
 pub(super) struct LabArguments {
-    /// Files of the test rig, one for each specimen: CSV or text with columns of travel and force
+    /// Files of the test rig, one for each specimen: CSV or text with columns of travel and force;
+    /// of drop-weight, sheets of one ore with columns of size, energy and t10
     #[arg(value_name = "FILE", required_unless_present = "specimens")]
     files: Vec<PathBuf>,
     /// Type of test: four-point-bending, three-point-bending, brazilian-disc, compression, tension,
-    /// dog-bone
+    /// dog-bone, drop-weight
     #[arg(long = "type", value_name = "TYPE")]
     test: String,
-    /// File to write; a page of the same name, ending in .html, is written with it
-    #[arg(long, short, value_name = "FILE", default_value = "measured.json")]
-    output: PathBuf,
+    /// File to write, measured.json unless given, or ore.toml of drop-weight; a page of the same
+    /// name, ending in .html, is written with it
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Material of drop-weight tests in the file that scenes include; the name of that file unless
+    /// given
+    #[arg(long, value_name = "NAME")]
+    material: Option<String>,
 
     /// Distance of the supports of a beam, such as 180mm
     #[arg(long, value_name = "LENGTH", help_heading = "Specimens")]
@@ -81,14 +92,22 @@ pub(super) struct LabArguments {
 /// Reads and evaluates the curves, writes the measured material and its page, and prints a summary.
 /// No valid specimen is an error, once the page is written.
 pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
+    if arguments.test == drop_weight::TYPE {
+        return fit_ore(arguments);
+    }
     let test = arguments.test_type()?;
     let dimensions = arguments.dimensions()?;
     let listed = arguments.listed()?;
-    let page_file = arguments.page_file()?;
-    need_folder_of(&arguments.output)?;
+    let output = arguments.output("measured.json");
+    let page_file = page_file(&output, "write the material to a name that ends in .json")?;
+    if arguments.material.is_some() {
+        let problem = format!("does not go with {}", arguments.test);
+        let remedy = "leave it out: a measured material has no name";
+        return Err(Diagnostic::input("--material", problem, remedy));
+    }
     let curves = listed.iter().map(|one| one.file.clone());
     let inputs: Vec<PathBuf> = curves.chain(arguments.specimens.clone()).collect();
-    refuse_to_replace(&[arguments.output.clone(), page_file.clone()], &inputs)?;
+    refuse_to_replace(&[output.clone(), page_file.clone()], &inputs)?;
     let measured: Vec<MeasuredSpecimen> = listed
         .iter()
         .map(|one| arguments.measured(one, test, &dimensions))
@@ -114,14 +133,45 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
         let remedy = format!("see {}", visible(&page_file.display().to_string()));
         return Err(Diagnostic::input("", problem, remedy));
     };
-    write_material(&arguments.output, &found)?;
+    write_material(&output, &found)?;
     if arguments.json {
         write_standard_json(&summary(&found, &evaluated))
     } else if arguments.quiet {
         Ok(())
     } else {
-        print(&found, &evaluated, &arguments.output, &page_file)
+        print(&found, &evaluated, &output, &page_file)
     }
+}
+
+/// Fits an ore to the sheets of its drop-weight tests; refuses options that only curves have.
+fn fit_ore(arguments: &LabArguments) -> Result<()> {
+    let given = [
+        ("--specimens", arguments.specimens.is_some()),
+        ("--support-span", arguments.support_span.is_some()),
+        ("--loading-span", arguments.loading_span.is_some()),
+        ("--width", arguments.width.is_some()),
+        ("--height", arguments.height.is_some()),
+        ("--length", arguments.length.is_some()),
+        ("--area", arguments.area.is_some()),
+        ("--travel-column", arguments.travel_column.is_some()),
+        ("--travel-unit", arguments.travel_unit.is_some()),
+        ("--force-column", arguments.force_column.is_some()),
+        ("--force-unit", arguments.force_unit.is_some()),
+    ];
+    if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        let problem = format!("does not go with {}", drop_weight::TYPE);
+        let remedy = "leave it out: the sheets give the sizes and units of their columns";
+        return Err(Diagnostic::input(*option, problem, remedy));
+    }
+    let output = arguments.output("ore.toml");
+    drop_weight::ore(&OreTask {
+        files: &arguments.files,
+        material: arguments.material.as_deref(),
+        page_file: &page_file(&output, "write the ore to a name that ends in .toml")?,
+        output: &output,
+        json: arguments.json,
+        quiet: arguments.quiet,
+    })
 }
 
 impl LabArguments {
@@ -132,22 +182,17 @@ impl LabArguments {
             .filter(|(_, test)| !test.is_dynamic() && !test.has_residual());
         let found = known.clone().find(|(name, _)| *name == self.test);
         found.map(|(_, test)| *test).ok_or_else(|| {
-            let names: Vec<&str> = known.by_ref().map(|(name, _)| *name).collect();
+            let names = known.by_ref().map(|(name, _)| *name);
+            let names: Vec<&str> = names.chain([drop_weight::TYPE]).collect();
             let names = names.join(", ");
             let problem = format!("'{}' is not a type of test", self.test.escape_debug());
             Diagnostic::input("--type", problem, format!("use one of {names}"))
         })
     }
 
-    /// The page beside the output.
-    fn page_file(&self) -> Result<PathBuf> {
-        let page_file = self.output.with_extension("html");
-        if page_file == self.output {
-            let problem = format!("{} is the name of the page", self.output.display());
-            let remedy = "write the material to a name that ends in .json";
-            return Err(Diagnostic::input("--output", problem, remedy));
-        }
-        Ok(page_file)
+    /// The file to write, this one unless given.
+    fn output(&self, usual: &str) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| PathBuf::from(usual))
     }
 
     /// The dimensions that the options give.
@@ -207,6 +252,17 @@ impl LabArguments {
             name,
         })
     }
+}
+
+/// The page beside the output, whose folder is there.
+fn page_file(output: &Path, remedy: &str) -> Result<PathBuf> {
+    let page_file = output.with_extension("html");
+    if page_file == output {
+        let problem = format!("{} is the name of the page", output.display());
+        return Err(Diagnostic::input("--output", problem, remedy));
+    }
+    need_folder_of(output)?;
+    Ok(page_file)
 }
 
 /// A specimen with what speaks against it.

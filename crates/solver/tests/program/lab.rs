@@ -185,6 +185,96 @@ fn what_cannot_be_evaluated_is_refused_with_one_message() {
     assert_eq!(std::fs::read_to_string(&specimens).unwrap(), list);
 }
 
+/// The measured quartzite gives a file that scenes include, and a page.
+#[test]
+fn drop_weight_tests_give_a_law_of_breakage() {
+    let bench = Bench::new();
+    let sheet = root().join("data/measured/quartzite-drop-weight.csv");
+    let lab = |options: &[&str], output: &str| {
+        let mut command = dem_run();
+        command
+            .arg("lab")
+            .arg(&sheet)
+            .args(["--type", "drop-weight"]);
+        command
+            .args(options)
+            .arg("--output")
+            .arg(bench.path(output));
+        command.output().unwrap()
+    };
+    let printed = lab(&["--json", "--material", "ore"], "quartzite.toml");
+    assert!(printed.status.success(), "{printed:?}");
+    let summary: Value = serde_json::from_slice(&printed.stdout).unwrap();
+    assert_eq!(summary["material"], "ore");
+    assert_eq!(summary["ore"]["tests"], 13);
+    let text = std::fs::read_to_string(bench.path("quartzite.toml")).unwrap();
+    for part in [
+        "# Fitted on 20",
+        " by dem-run ",
+        "\n\n[materials.ore.breakage]\nlargest_t10 = 1.0\nb = \"1.20",
+    ] {
+        assert!(text.contains(part), "{part} not in {text}");
+    }
+    let page = std::fs::read_to_string(bench.path("quartzite.html")).unwrap();
+    for part in [
+        "t10 over energy",
+        "Master curve",
+        "Family",
+        "A is at its bound",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    // The name of the file is that of the material; all but the place of the file stays the same.
+    let printed = lab(&[], "again.toml");
+    let said = String::from_utf8(printed.stdout).unwrap();
+    assert!(
+        said.contains("b                1.2 t/kWh       95 %: 1.06 to 1.37"),
+        "{said}"
+    );
+    let again = std::fs::read_to_string(bench.path("again.toml")).unwrap();
+    assert_eq!(again.replace("materials.again", "materials.ore"), text);
+    assert!(lab(&["--quiet"], "again.toml").stdout.is_empty());
+    for (options, output, wanted) in [
+        (
+            &["--width", "3mm"][..],
+            "no.toml",
+            "error: --width: does not go with drop-weight; leave it out",
+        ),
+        (
+            &["--material", "a b"],
+            "no.toml",
+            "error: --material: 'a b' is not the name of a material; use letters",
+        ),
+        (
+            &[],
+            "no.html",
+            "is the name of the page; write the ore to a name that ends in .toml",
+        ),
+    ] {
+        let (said, code) = refused(&lab(options, output));
+        assert!(said.contains(wanted), "{said}");
+        assert_eq!(code, 2);
+        assert!(!bench.path("no.toml").exists() && !bench.path("no.html").exists());
+    }
+    let bad = bench.write(
+        "bad.csv",
+        "size (mm),Ecs (kWh/t),t10 (%)\n30,1,20\n30,2,30\n30,3,130\n",
+    );
+    let mut command = dem_run();
+    command
+        .arg("lab")
+        .arg(&bad)
+        .args(["--type", "drop-weight", "--output"]);
+    let (said, code) = refused(&command.arg(bench.path("no.toml")).output().unwrap());
+    let wanted = format!(
+        "error: {}: line 4: the t10 is 130 %, above 100 %; correct",
+        bad.display()
+    );
+    assert!(said.starts_with(&wanted), "{said}");
+    assert_eq!(code, 2);
+    assert!(!bench.path("no.toml").exists() && !bench.path("no.html").exists());
+}
+
 /// A file without an end is refused.
 #[cfg(unix)]
 #[test]
