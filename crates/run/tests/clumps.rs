@@ -11,6 +11,7 @@ mod ids;
 mod inlets;
 mod lists;
 mod masses;
+mod measured_breakage;
 mod outer;
 mod outlets;
 mod refused;
