@@ -1,4 +1,4 @@
-//! doc/parameters.md: which parameters of a breaking disc matter.
+//! doc/parameters.md: which parameters of a breaking cake matter.
 
 use dem_io::units::significant;
 use dem_scene::study::read_study;
@@ -7,69 +7,103 @@ use serde_json::Value;
 use crate::bench::{Bench, Failed, number, read, root};
 use crate::table::{Table, write};
 
-const STUDY: &str = "parameters";
-/// Measures of the study, in the order of the columns.
-const MEASURES: [&str; 4] = ["strength", "d50", "rebound", "time"];
-/// Measures whose plots stand on the page: file in the folder of the study, and on the page.
+/// A study, and its measures with their columns on the page.
+struct Ranked {
+    study: &'static str,
+    measures: &'static [&'static str],
+    head: &'static str,
+}
+
+const STUDIES: [Ranked; 2] = [
+    Ranked {
+        study: "parameters-drop",
+        measures: &["d50", "broken", "rebound", "push", "time"],
+        head: "parameter and its range | d50 | broken bonds | rebound velocity | impact force | processor time",
+    },
+    Ranked {
+        study: "parameters-compression",
+        measures: &["strength", "stiffness", "time"],
+        head: "parameter and its range | strength | stiffness | processor time",
+    },
+];
+/// Plots of the page: file in the folder of the studies, and that on the page.
 const PLOTS: [[&str; 2]; 4] = [
-    ["strength.svg", "doc/parameters-strength.svg"],
-    ["d50.svg", "doc/parameters-d50.svg"],
-    ["time.svg", "doc/parameters-time.svg"],
-    ["rebound.sigma.svg", "doc/parameters-rebound-sigma.svg"],
+    ["parameters-drop/rebound.svg", "doc/parameters-rebound.svg"],
+    [
+        "parameters-drop/rebound.sigma.svg",
+        "doc/parameters-sigma.svg",
+    ],
+    ["parameters-drop/time.svg", "doc/parameters-time.svg"],
+    [
+        "parameters-compression/strength.svg",
+        "doc/parameters-strength.svg",
+    ],
 ];
 
-pub(crate) fn table() -> Result<Table, Failed> {
-    let study = read_study(&root().join(format!("data/studies/{STUDY}.toml")))?;
+pub(crate) fn tables() -> Result<Vec<Table>, Failed> {
+    STUDIES.iter().map(table).collect()
+}
+
+/// The table of a study, with its parameters.
+fn table(of: &Ranked) -> Result<Table, Failed> {
+    let study = read_study(&root().join(format!("data/studies/{}.toml", of.study)))?;
     let ranges = study.design.iter().flat_map(|design| &design.ranges);
     let names = study.axes.iter().zip(ranges).map(|(axis, range)| {
         let [low, high] = range.ends.map(|end| significant(end, 4));
         let text = format!("`{}`, {low} to {high} {}", axis.name, range.unit);
         text.trim_end().to_owned()
     });
-    let head = "parameter and its range | largest force | d50 | rebound velocity | processor time";
+    let names: Vec<String> = names.collect();
     Ok(Table::new(
         "doc/parameters.md",
         "parameters",
-        head,
-        names.collect::<Vec<_>>(),
+        of.head,
+        names,
     ))
 }
 
 /// mu* of each parameter over the mean of each measure, and its interval.
 pub(crate) fn parameters(bench: &Bench) -> Result<(), Failed> {
-    bench.study(STUDY)?;
-    let folder = bench.folder.join(STUDY);
-    let results = read(&folder.join("sweep.json")).ok_or("the study left no results")?;
-    let mut table = table()?;
-    for parameter in 0..table.rows.len() {
-        table.row(MEASURES.map(|measure| cell(&results, measure, parameter)));
+    let mut tables = tables()?;
+    for (of, table) in STUDIES.iter().zip(&mut tables) {
+        bench.study(of.study)?;
+        let results = read(&bench.folder.join(of.study).join("sweep.json"));
+        let results = results.ok_or("the study left no results")?;
+        for parameter in 0..table.rows.len() {
+            let cell = |measure: &&str| cell(&results, measure, parameter);
+            table.row(of.measures.iter().map(cell));
+        }
     }
     for [from, to] in PLOTS {
-        std::fs::copy(folder.join(from), root().join(to))?;
+        std::fs::copy(bench.folder.join(from), root().join(to))?;
     }
-    write(&[table])
+    write(&tables)
 }
 
-/// `27 % (22 to 31)`; in brackets with the word if chance may give as much.
+/// `27 % (22 to 31)`; in brackets as a whole if chance may give as much.
 fn cell(results: &Value, measure: &str, parameter: usize) -> String {
-    let measures = results["measures"].as_array().into_iter().flatten();
-    let at = measures.into_iter().position(|one| one["name"] == measure);
-    let mut rankings = results["design"]["morris"].as_array().into_iter().flatten();
-    let Some(ranking) = rankings.find(|one| one["measure"].as_u64() == at.map(|at| at as u64))
-    else {
-        return String::new();
-    };
-    let mut parameters = ranking["parameters"].as_array().into_iter().flatten();
-    let of = parameters.find(|one| one["parameter"].as_u64() == Some(parameter as u64));
-    let Some(of) = of.filter(|of| !of["statistics"].is_null()) else {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let is_of = |one: &Value, key: &str, at: usize| one[key].as_u64() == Some(at as u64);
+    let at = list(&results["measures"])
+        .iter()
+        .position(|one| one["name"] == measure);
+    let rankings = list(&results["design"]["morris"]);
+    let ranking = rankings
+        .iter()
+        .find(|one| at.is_some_and(|at| is_of(one, "measure", at)));
+    let parameters = ranking.map_or(Vec::new(), |one| list(&one["parameters"]));
+    let of = parameters
+        .iter()
+        .find(|one| is_of(one, "parameter", parameter));
+    let (Some(ranking), Some(of)) = (ranking, of.filter(|of| !of["statistics"].is_null())) else {
         return String::new();
     };
     let percent = |value: &Value| significant(100.0 * number(value) / number(&ranking["mean"]), 2);
     let statistics = &of["statistics"];
-    let [low, high] = [0, 1].map(|end| percent(&statistics["interval"][end]));
-    let text = format!("{} % ({low} to {high})", percent(&statistics["mu_star"]));
-    match of["is_above_chance"].as_bool() {
-        Some(false) => format!("within chance: {text}"),
-        _ => text,
+    let mu_star = percent(&statistics["mu_star"]);
+    if of["is_above_chance"].as_bool() == Some(false) {
+        return format!("({mu_star} %)");
     }
+    let [low, high] = [0, 1].map(|end| percent(&statistics["interval"][end]));
+    format!("{mu_star} % ({low} to {high})")
 }

@@ -21,7 +21,7 @@ fn tables() -> Vec<Table> {
     all.extend(dynamic::tables());
     all.extend(laboratory::tables());
     all.extend(packing::tables());
-    all.push(parameters::table().unwrap());
+    all.extend(parameters::tables().unwrap());
     all.extend(pressing::tables());
     all.extend(process::tables());
     all.extend(replacement::tables());

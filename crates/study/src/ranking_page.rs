@@ -28,7 +28,7 @@ pub(crate) fn add_design(page: &mut Page, table: &SweepTable, design: &DesignTab
     let measures = table.measures.iter();
     columns.extend(measures.map(|measure| Column::number(&in_words(&measure.name))));
     let rows = design.parameters.iter().enumerate().map(|(parameter, of)| {
-        let mut cells = vec![in_words(&of.name), range_text(of)];
+        let mut cells = vec![of.name.clone(), range_text(of)];
         cells.extend((0..table.measures.len()).map(|measure| share(design, measure, parameter)));
         Row::from(cells)
     });
@@ -127,7 +127,7 @@ fn morris_table(table: &SweepTable, design: &DesignTable, ranking: &MorrisRankin
             let percent = statistics.map(|of| percent_text(of.mu_star, ranking.mean));
             Row::from(vec![
                 rank.to_string(),
-                in_words(&design.parameters[of.parameter].name),
+                design.parameters[of.parameter].name.clone(),
                 number(statistics.map(|of| of.mu_star), 3),
                 interval,
                 percent.unwrap_or_default(),
@@ -161,7 +161,7 @@ fn change_table(table: &SweepTable, design: &DesignTable, ranking: &OneAtATimeRa
         .map(|(rank, of): (usize, _)| {
             let mut cells = vec![
                 rank.to_string(),
-                in_words(&design.parameters[of.parameter].name),
+                design.parameters[of.parameter].name.clone(),
             ];
             for change in [&of.low, &of.high] {
                 let percent = change

@@ -239,7 +239,7 @@ fn failed_runs_are_named_and_left_out() {
     // Its largest level exceeds the stable step of the stiffer contacts.
     let study = study.replace(
         "[measures.rebound]",
-        "\"run.time_step\" = [\"50 us\", \"1 ms\"]\n[measures.rebound]",
+        "\"run.time_step\" = [\"50 us\", \"1000 us\"]\n[measures.rebound]",
     );
     bench.write("study.toml", study);
     let output = sweep(&bench, &["--jobs", "2"]).output().unwrap();
