@@ -182,3 +182,25 @@ def test_what_is_no_sweep_is_refused(swept: crumble.Sweep, tmp_path: Path) -> No
     assert (caught.value.exit_code, caught.value.place) == (2, str(tmp_path))
     with pytest.raises(crumble.Error, match=r"find.csv: there is no such table: the study has no \[find\]"):
         swept.find  # noqa: B018
+
+
+def test_a_design_has_ranked_effects(tmp_path: Path) -> None:
+    text = STUDY[: STUDY.index("[vary]")] + """[design]
+kind = "morris"
+trajectories = 2
+
+[design.ranges]
+"run.safety_factor" = [0.4, 0.8]
+
+[measures.tip_x]
+"""
+    file = tmp_path / "design.toml"
+    file.write_text(text)
+    swept = crumble.sweep(file, out=tmp_path / "out", jobs=2)
+    for effects in (swept.effects, crumble.read_sweep(tmp_path / "out").effects):
+        assert list(effects["parameter"]) == ["run.safety_factor"]
+        assert list(effects["effects"]) == [2] and list(effects["parameter_unit"]) == [""]
+        assert effects["mu_star"].dtype == float
+    assert swept.summary["design"]["morris"][0]["measure"] == 0
+    with pytest.raises(crumble.Error, match=r"find.csv: there is no such table"):
+        swept.find  # noqa: B018

@@ -17,6 +17,7 @@ mod cells;
 mod dynamic;
 mod laboratory;
 mod packing;
+mod parameters;
 mod pictures;
 mod plots;
 mod pressing;
@@ -38,7 +39,7 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 27] = [
+const COMMANDS: [(&str, Work); 28] = [
     ("bulk heaps", bulk::heaps),
     ("bulk route", bulk::route),
     ("calibration scatter", calibration::scatter),
@@ -49,6 +50,7 @@ const COMMANDS: [(&str, Work); 27] = [
     ("packing densify", packing::densify),
     ("packing growth", packing::growth),
     ("packing ratios", packing::ratios),
+    ("parameters", parameters::parameters),
     ("picture failure-models", pictures::failure_models),
     ("picture larger-spheres", pictures::larger_spheres),
     ("picture strain-rate", pictures::strain_rate),

@@ -10,8 +10,8 @@ use crate::bench::root;
 use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
-    COMMANDS, bulk, calibration, dynamic, laboratory, packing, pressing, process, replacement,
-    round_robin, self_contact, thesis,
+    COMMANDS, bulk, calibration, dynamic, laboratory, packing, parameters, pressing, process,
+    replacement, round_robin, self_contact, thesis,
 };
 
 fn tables() -> Vec<Table> {
@@ -21,6 +21,7 @@ fn tables() -> Vec<Table> {
     all.extend(dynamic::tables());
     all.extend(laboratory::tables());
     all.extend(packing::tables());
+    all.extend(parameters::tables().unwrap());
     all.extend(pressing::tables());
     all.extend(process::tables());
     all.extend(replacement::tables());

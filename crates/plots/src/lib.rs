@@ -2,9 +2,10 @@
 //! processor.
 //!
 //! A [`Plot`] has lines, marks with error bars or both over a pair of axes; a [`Map`] shows
-//! positions to scale; a [`Page`] contains text, tables, plots and maps. All are plain data, and
+//! positions to scale; [`Bars`] rank; a [`Page`] contains text, tables, plots and maps. All are plain data, and
 //! equal data gives equal bytes. Only `maud` writes tags, so that no text can be taken for one.
 
+mod bars;
 mod colours;
 mod draw;
 mod legend;
@@ -17,6 +18,7 @@ mod svg;
 mod text;
 mod thin;
 
+pub use bars::{Bar, BarRow, Bars};
 pub use colours::{MOST_LINES, blue_to_red, viridis};
 pub use map::{Circle, Dot, Guide, Map};
 pub use page::{Column, Page, Row, Table};

@@ -6,5 +6,6 @@
     reason = "a test stops where it fails"
 )]
 
+mod bars;
 mod pages;
 mod plots;

@@ -1,5 +1,6 @@
 //! Studies: valid contents, refusals, and scenes written with their values.
 
+mod designs;
 mod searches;
 
 use std::path::Path;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use dem_results::Summary;
-use dem_scene::study::{MeasureOf, Reference, RunTime, Study};
+use dem_scene::study::{MeasureOf, Reference, RunTime, SizeFigure, Study};
 
 use super::curves::{curve, largest_n};
 use super::jobs::Job;
@@ -57,10 +57,7 @@ fn done(study: &Study, summary: &Summary, results: &Path) -> Result<Done, String
         readings.push(read);
     }
     Ok(Done {
-        time_s: match study.time {
-            RunTime::Wall => summary.wall_s,
-            RunTime::Processor => (summary.processor_s).ok_or("its summary has no processor_s")?,
-        },
+        time_s: time_s(study.time, summary)?,
         steps: summary.steps,
         time_step_s: summary.time_step_s,
         machine: summary.machine.clone(),
@@ -68,6 +65,30 @@ fn done(study: &Study, summary: &Summary, results: &Path) -> Result<Done, String
         report: None,
         readings,
     })
+}
+
+/// A size of all fragments of a run, m.
+fn size_m(figure: SizeFigure, summary: &Summary) -> Result<f64, String> {
+    let sizes = summary
+        .sizes
+        .as_ref()
+        .and_then(|sizes| sizes.all.get("both"));
+    let sizes = sizes.ok_or("its summary has no sizes of fragments: nothing can break")?;
+    Ok(match figure {
+        SizeFigure::D10 => sizes.d10_m,
+        SizeFigure::D50 => sizes.d50_m,
+        SizeFigure::D80 => sizes.d80_m,
+    })
+}
+
+/// Time of the steps of a run, s.
+fn time_s(time: RunTime, summary: &Summary) -> Result<f64, String> {
+    match time {
+        RunTime::Wall => Ok(summary.wall_s),
+        RunTime::Processor => {
+            (summary.processor_s).ok_or_else(|| "its summary has no processor_s".to_owned())
+        }
+    }
 }
 
 fn reading(summary: &Summary, results: &Path, of: &MeasureOf) -> Result<Reading, String> {
@@ -85,6 +106,18 @@ fn reading(summary: &Summary, results: &Path, of: &MeasureOf) -> Result<Reading,
                 "momentum_error" => summary.momentum_error,
                 _ => summary.angular_momentum_error,
             }));
+        }
+        MeasureOf::RunTime(time) => {
+            return Ok(Reading {
+                unit: "s".to_owned(),
+                ..plain(time_s(*time, summary)?)
+            });
+        }
+        MeasureOf::Size(figure) => {
+            return Ok(Reading {
+                unit: "m".to_owned(),
+                ..plain(size_m(*figure, summary)?)
+            });
         }
         MeasureOf::Masses(pieces) => {
             let masses_kg = masses_kg(*pieces, results)?;

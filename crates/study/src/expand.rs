@@ -1,7 +1,9 @@
 //! From a study to its runs.
 
 use dem_io::{Diagnostic, Result};
-use dem_scene::study::{Axis, Combine, Find, Setting, Study};
+use dem_scene::study::{Axis, Combine, Design, Find, Setting, Study};
+
+use super::design::{point_count, points, seeds};
 
 /// Largest number of processes started without confirmation.
 pub const MOST_UNASKED: u64 = 10_000;
@@ -44,6 +46,7 @@ impl Run {
 pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
     let lengths: Vec<usize> = study.axes.iter().map(|axis| axis.values.len()).collect();
     let count = match (study.combine, &study.find) {
+        _ if let Some(design) = &study.design => point_count(design) * seeds(study) as u64,
         (Combine::Grid, Some(find)) => {
             let averaged = study.average_over.map_or(1, |at| lengths[at]);
             let tried: usize = find.tried.iter().map(Vec::len).sum();
@@ -86,6 +89,9 @@ pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
     if let Some(find) = &study.find {
         return Ok(runs_of_search(study, find, &lengths));
     }
+    if let Some(design) = &study.design {
+        return Ok(runs_of_design(study, design));
+    }
     // Not above MOST.
     Ok((0..count as usize)
         .map(|index| Run {
@@ -120,6 +126,21 @@ fn runs_of_search(study: &Study, find: &Find, lengths: &[usize]) -> Vec<Run> {
     }
     runs.sort_by_key(|run| run.number);
     runs
+}
+
+/// The runs of a design: point by point, each with every value of the averaged axis, which is the
+/// last. More trajectories leave the numbers of the others.
+fn runs_of_design(study: &Study, design: &Design) -> Vec<Run> {
+    let of_point = points(design).into_iter().flat_map(|point| {
+        let seeds = 0..seeds(study);
+        let is_averaged = study.average_over.is_some();
+        seeds.map(move |seed| {
+            let seed = is_averaged.then_some(seed);
+            point.iter().copied().chain(seed).collect()
+        })
+    });
+    let run = |(number, choice): (usize, Vec<usize>)| Run { number, choice };
+    (1..).zip(of_point).map(run).collect()
 }
 
 fn paired(axes: &[Axis]) -> Result<usize> {

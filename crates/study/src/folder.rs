@@ -9,7 +9,7 @@ use dem_io::write_target::is_same_file;
 use dem_io::{Diagnostic, Result};
 use dem_results::folder::lock_file;
 use dem_results::{Existing, ResultsFolder, is_plot_file, write_json};
-use dem_scene::study::{Average, Setting, Study};
+use dem_scene::study::{Average, DesignKind, Setting, Study};
 use serde_json::{Value, json};
 
 use super::jobs::Job;
@@ -31,13 +31,14 @@ pub(crate) const SNAKEFILE: &str = "Snakefile";
 const DONE: &str = "done";
 
 /// Files of which a sweep makes one each, besides [`IDENTITY`].
-const TABLES: [&str; 8] = [
+const TABLES: [&str; 9] = [
     COMMANDS,
     SLURM,
     SNAKEFILE,
     "sweep.csv",
     "responses.csv",
     "find.csv",
+    "effects.csv",
     "sweep.json",
     "sweep.html",
 ];
@@ -288,6 +289,13 @@ fn identity(study: &Study, scene_text: &str) -> Value {
         identity["[find]"] = match find.statistic {
             Average::Mean => looked_for.into(),
             Average::Median => format!("{looked_for} median").into(),
+        };
+    }
+    // More trajectories continue a design.
+    if let Some(design) = &study.design {
+        identity["[design]"] = match design.kind {
+            DesignKind::OneAtATime => json!("one at a time"),
+            DesignKind::Morris { levels, seed, .. } => json!(["morris", levels, seed]),
         };
     }
     identity

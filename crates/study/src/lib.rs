@@ -5,12 +5,15 @@
 //! outcomes -> [`response`]s; `judge` errors (of distributions: [`masses`], of tests: [`curves`])
 //! -> `table` medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s and
 //! [`response_plot`]s, [`want`] the fastest run that is accurate enough. [`search`] adds points to
-//! the study until the value that is looked for is found.
+//! the study until the value that is looked for is found. A [`design`] moves parameters within
+//! ranges ([`morris`], [`one_at_a_time`]); the [`ranking`] shows what each of them changes.
 
 mod chance;
 pub mod cluster;
 pub mod collect;
+pub(crate) mod csv_line;
 pub mod curves;
+pub mod design;
 pub mod expand;
 pub mod failure_line;
 pub mod folder;
@@ -19,10 +22,16 @@ pub mod jobs;
 pub(crate) mod judge;
 pub mod masses;
 pub(crate) mod median;
+pub mod morris;
+pub mod one_at_a_time;
 pub(crate) mod order;
 pub mod outcome;
 pub mod page;
 pub mod plot;
+pub mod ranking;
+pub(crate) mod ranking_page;
+pub mod ranking_plot;
+pub mod ranking_text;
 pub(crate) mod reference;
 pub mod response;
 pub(crate) mod response_page;

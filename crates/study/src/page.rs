@@ -5,6 +5,7 @@ use dem_plots::{Column, Page, Table};
 
 use super::curves;
 use super::plot::plot;
+use super::ranking_page;
 use super::response_page;
 use super::row::{Judged, Row};
 use super::sweep_table::SweepTable;
@@ -36,10 +37,18 @@ pub fn page(table: &SweepTable) -> String {
         );
     }
     response_page::add_search(&mut page, table);
+    if let Some(design) = &table.design {
+        ranking_page::add_design(&mut page, table, design);
+    }
     for (at, measure) in table.measures.iter().enumerate() {
         page.heading(&measure.name.replace('_', " "));
-        if let Some(response) = table.responses.iter().find(|r| r.measure == at) {
-            response_page::add_response(&mut page, table, response);
+        match (
+            &table.design,
+            table.responses.iter().find(|r| r.measure == at),
+        ) {
+            (Some(design), _) => ranking_page::add_ranking(&mut page, table, design, at),
+            (None, Some(response)) => response_page::add_response(&mut page, table, response),
+            (None, None) => {}
         }
         if let Some(reference) = &measure.reference {
             page.paragraph(&format!("Against {reference}."));
@@ -63,6 +72,7 @@ pub fn page(table: &SweepTable) -> String {
 /// What the page shows.
 fn subject(table: &SweepTable) -> &'static str {
     match (table.has_errors(), table.responses.is_empty()) {
+        _ if table.design.is_some() => "Which parameters matter",
         (true, true) => "Error against run time",
         (true, false) => "Response, and error against run time",
         (false, _) => "Response",

@@ -4,6 +4,7 @@ use dem_scene::study::Average;
 use serde::Serialize;
 
 use super::failure_line::FailureLine;
+use super::ranking::DesignTable;
 use super::response::Response;
 use super::row::Row;
 use super::search::Search;
@@ -43,6 +44,9 @@ pub struct SweepTable {
     pub responses: Vec<Response>,
     /// The search for a value, once for each case.
     pub find: Option<Search>,
+    /// What the parameters of `[design]` change. None: the study has no such table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub design: Option<DesignTable>,
     /// Cohesion and friction angle. None: the study does not vary the pressure of a test.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure_line: Option<FailureLine>,

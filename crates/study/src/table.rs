@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use dem_results::summary::{Trust, Verdict};
-use dem_scene::study::{Axis, RunTime, Study};
+use dem_scene::study::{Axis, MeasureOf, RunTime, Study};
 
 use super::chance;
 use super::expand::Run;
@@ -12,7 +12,8 @@ use super::front::{Point, front};
 use super::judge::{in_words, judge};
 use super::median::median;
 use super::order::orders;
-use super::outcome::{Done, Outcome};
+use super::outcome::{Done, Outcome, Reading};
+use super::ranking::design_table;
 use super::response::{Response, responses};
 use super::row::{Judged, Row};
 use super::search::{Search, search};
@@ -37,7 +38,7 @@ impl SweepTable {
         let mut firsts = Vec::new();
         for (run, outcomes) in runs.iter().zip(outcomes) {
             let repeats = finished(outcomes);
-            notes.extend(differing(run, &repeats));
+            notes.extend(differing(study, run, &repeats));
             notes.extend(lacking(run, repeats.len(), outcomes.len()));
             machines.extend(repeats.iter().map(|done| done.machine.clone()));
             rows.push(row(study, run, outcomes, &repeats));
@@ -55,6 +56,8 @@ impl SweepTable {
         notes.extend(chance::notes(study, &responses));
         let (find, of_search) = found(study, &responses, looked_for).unzip();
         notes.extend(of_search.unwrap_or_default());
+        let (design, of_design) = design_table(study, &rows).unzip();
+        notes.extend(of_design.unwrap_or_default());
         let failure_line = FailureLine::of(study, &rows);
         notes.extend(failure_line.as_ref().map(FailureLine::note));
         Self {
@@ -78,6 +81,7 @@ impl SweepTable {
             runs: rows,
             responses,
             find,
+            design,
             failure_line,
             notes,
         }
@@ -123,12 +127,32 @@ fn finished(outcomes: &[Outcome]) -> Vec<&Done> {
     done.collect()
 }
 
-/// What is to be said of a run whose repeats have different values.
-fn differing(run: &Run, repeats: &[&Done]) -> Option<String> {
+/// What is to be said of a run whose repeats have different values, apart from run times.
+fn differing(study: &Study, run: &Run, repeats: &[&Done]) -> Option<String> {
+    let values = |done: &Done| -> Vec<Reading> {
+        let all = study.measures.iter().zip(&done.readings);
+        let values = all.filter(|(measure, _)| !is_run_time(&measure.of));
+        values.map(|(_, reading)| reading.clone()).collect()
+    };
     let mut pairs = repeats.windows(2);
-    let differ = pairs.any(|two| two[0].readings != two[1].readings);
+    let differ = pairs.any(|two| values(two[0]) != values(two[1]));
     let number = run.number;
     differ.then(|| format!("run {number} gave other values when it was done again"))
+}
+
+fn is_run_time(of: &MeasureOf) -> bool {
+    matches!(of, MeasureOf::RunTime(_))
+}
+
+/// The value of a measure of a run: that of its first repeat, of run times the median of all.
+fn value(study: &Study, done: &[&Done], measure: usize) -> f64 {
+    let repeats = done.iter().filter_map(|done| done.readings.get(measure));
+    let mut values: Vec<f64> = repeats.map(|reading| reading.value).collect();
+    if !is_run_time(&study.measures[measure].of) {
+        return values.first().copied().unwrap_or(f64::NAN);
+    }
+    values.sort_by(f64::total_cmp);
+    median(&values).unwrap_or(f64::NAN)
 }
 
 /// Marks the fronts. Of several machines times are not compared: then there is no front, and the
@@ -223,17 +247,21 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
         steps: first.map(|done| done.steps),
         time_step_s: first.map(|done| done.time_step_s),
         report: first.and_then(|done| done.report.clone()),
-        results: first.map_or(Vec::new(), |done| {
-            let judged = done.readings.iter().map(|reading| Judged {
-                value: reading.value,
-                reference: None,
-                error: None,
-                uncertainty: None,
-                is_reference: false,
-                is_on_front: false,
-                times_as_fast: None,
-                curve: reading.curve.clone(),
-            });
+        results: first.map_or(Vec::new(), |first| {
+            let judged = first
+                .readings
+                .iter()
+                .enumerate()
+                .map(|(measure, reading)| Judged {
+                    value: value(study, done, measure),
+                    reference: None,
+                    error: None,
+                    uncertainty: None,
+                    is_reference: false,
+                    is_on_front: false,
+                    times_as_fast: None,
+                    curve: reading.curve.clone(),
+                });
             judged.collect()
         }),
     }

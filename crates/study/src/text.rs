@@ -2,10 +2,12 @@
 
 use std::fmt;
 
-use dem_io::text::{exact, visible};
+use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_scene::study::Average;
 
+use super::csv_line::{line, number};
+use super::ranking_text::write_design;
 use super::response::Response;
 use super::response_plot::{average, named, shown_axes};
 use super::row::{Judged, Row};
@@ -158,25 +160,6 @@ fn cell(table: &SweepTable, axis: usize, at: usize) -> String {
     }
 }
 
-fn number(value: Option<f64>) -> String {
-    value.map_or(String::new(), exact)
-}
-
-fn line(cells: &[String]) -> String {
-    let cells: Vec<String> = cells
-        .iter()
-        .map(|cell| {
-            let cell = visible(cell);
-            if cell.contains([',', '"']) {
-                format!("\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                cell.into_owned()
-            }
-        })
-        .collect();
-    format!("{}\n", cells.join(","))
-}
-
 /// The runs on the front of a measure, the fastest first.
 pub(crate) fn front_of(table: &SweepTable, measure: usize) -> Vec<&Row> {
     let on = |row: &&Row| row.results.get(measure).is_some_and(|j| j.is_on_front);
@@ -306,8 +289,13 @@ fn failed_text(table: &SweepTable, row: &Row) -> String {
 impl fmt::Display for SweepTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_head(f, self)?;
-        for response in &self.responses {
-            write_response(f, self, response)?;
+        match &self.design {
+            Some(design) => write_design(f, self, design)?,
+            None => {
+                for response in &self.responses {
+                    write_response(f, self, response)?;
+                }
+            }
         }
         if let Some(search) = &self.find {
             write_search(f, self, search)?;

@@ -35,7 +35,8 @@ pub(crate) fn in_words(path: &str) -> String {
     let words = keys.join(" ");
     let words = words
         .replace("young m", "Young's m")
-        .replace("poisson r", "Poisson's r");
+        .replace("poisson r", "Poisson's r")
+        .replace("weibull m", "Weibull m");
     of.map_or(words.clone(), |name| format!("{words} of {name}"))
 }
 

@@ -16,7 +16,7 @@ from crumble._progress import Progress, shown
 if TYPE_CHECKING:
     import pandas as pd
 
-TEXTS = ("unit", "verdict", "failed", "result")
+TEXTS = ("unit", "parameter_unit", "verdict", "failed", "result")
 """Columns of texts, which may be empty."""
 
 
@@ -48,6 +48,13 @@ class Sweep:
     def find(self) -> pd.DataFrame:
         """`find.csv`: what `[find]` of the study found, with the ends of its interval."""
         return self._table("find.csv", "the study has no [find]")
+
+    @cached_property
+    def effects(self) -> pd.DataFrame:
+        """`effects.csv`: a row for each measure and parameter of `[design]`, by rank: what the
+        parameter changes, and whether that is more than chance.
+        """
+        return self._table("effects.csv", "the study has no [design]")
 
     @cached_property
     def summary(self) -> dict[str, Any]:

@@ -33,8 +33,8 @@ pub struct Study {
     pub combine: Combine,
     /// `[set]`: values common to all runs.
     pub fixed: Vec<Setting>,
-    /// The parameter of `[find]` if there is one, `[vary]`, then `[together.NAME]`, in the order of
-    /// the file. At least one.
+    /// The parameter of `[find]` or those of `[design]` if there is one, `[vary]`, then
+    /// `[together.NAME]`, in the order of the file. At least one.
     pub axes: Vec<Axis>,
     /// `[measures.NAME]`, in the order of the file. At least one.
     pub measures: Vec<StudyMeasure>,
@@ -45,6 +45,8 @@ pub struct Study {
     pub statistic: Average,
     /// `[find]`
     pub find: Option<Find>,
+    /// `[design]`
+    pub design: Option<Design>,
     /// `series` of `[page]`: the axis whose values are distinguished by colour; the first without
     /// sizes unless given.
     pub series: Option<usize>,
@@ -100,6 +102,47 @@ pub struct Find {
     pub tried: Vec<Vec<usize>>,
     /// Its place in the study.
     pub place: String,
+}
+
+/// Runs in which parameters move within ranges, to rank them by what they change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Design {
+    /// `kind`, and what belongs to it.
+    pub kind: DesignKind,
+    /// `[design.ranges]`, in the order of the file: the first axes of the study. At least one.
+    pub ranges: Vec<DesignRange>,
+    /// Its place in the study.
+    pub place: String,
+}
+
+/// How the parameters of a design move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DesignKind {
+    /// "one-at-a-time": each from the base to both ends of its range, the others at the base.
+    OneAtATime,
+    /// "morris": along trajectories on which each changes once (Morris 1991).
+    Morris {
+        /// `trajectories`, at least 2.
+        trajectories: usize,
+        /// `levels` of each range, even.
+        levels: usize,
+        /// `seed` of the random trajectories.
+        seed: u64,
+    },
+}
+
+/// The range of a parameter of a design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesignRange {
+    /// Its ends in `unit`, ascending.
+    pub ends: [f64; 2],
+    /// Unit as written; empty for plain numbers.
+    pub unit: String,
+    /// `spacing`: true if levels have equal ratios.
+    pub is_log: bool,
+    /// `base` in `unit`: the value from which it changes, one at a time; that of the scene unless
+    /// given, once [`Study::settle_design`] has read it. None for other designs.
+    pub base: Option<f64>,
 }
 
 /// What is taken of the values along the averaged axis.
@@ -238,6 +281,21 @@ pub enum MeasureOf {
     /// `balance`: "energy", "momentum" or "angular-momentum": its largest relative error, which
     /// needs no reference.
     Balance(&'static str),
+    /// `run_time`: the time of the steps, s.
+    RunTime(RunTime),
+    /// `fragment_size`: the size up to which a fraction of the mass of all fragments is, m.
+    Size(SizeFigure),
+}
+
+/// A size of fragments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SizeFigure {
+    /// "d10"
+    D10,
+    /// "d50"
+    D50,
+    /// "d80"
+    D80,
 }
 
 /// The pieces whose masses are compared.
@@ -280,6 +338,11 @@ pub(super) const CURVES: [(&str, ()); 1] = [("force-displacement", ())];
 impl Word for Pieces {
     const WORDS: &'static [(&'static str, Self)] =
         &[("discharged", Self::Left), ("remaining", Self::AtEnd)];
+}
+
+impl Word for SizeFigure {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("d10", Self::D10), ("d50", Self::D50), ("d80", Self::D80)];
 }
 
 impl Word for RunTime {

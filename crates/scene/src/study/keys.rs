@@ -1,6 +1,6 @@
 //! The keys of a study.
 
-use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RunTime};
+use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RunTime, SizeFigure};
 use crate::schema::{Key, Kind, Word, table_schema, words_of};
 
 /// Largest number of threads.
@@ -58,6 +58,7 @@ table_schema! {
     /// standard deviation, or their median with the range. `[find]` has its own.
     new("statistic", Kind::Word(|| words_of(&AVERAGES))).or_word("mean");
     documented("find", &FIND);
+    documented("design", &DESIGN);
     documented("page", &PAGE);
 }
 
@@ -83,6 +84,44 @@ table_schema! {
     /// Largest width of the interval in which the parameter is found, in the same unit.
     new("tolerance", ANYTHING).required("\"2 cm\"");
 }
+
+table_schema! {
+    /// Runs that show which parameters matter: each moves within a range, and the measures are
+    /// compared. Besides the ranges only the axis of `average_over` varies; its scatter is chance.
+    pub(super) static DESIGN = "[design]";
+
+    /// `one-at-a-time`: each parameter from the base to both ends of its range; `morris`: random
+    /// trajectories on which each parameter changes once (Morris 1991).
+    new("kind", Kind::Word(|| words_of(&DESIGN_KINDS))).required("\"morris\"");
+    /// Number of trajectories; each has a run more than there are parameters.
+    whole("trajectories", 2).up_to(1000.0).or(10.0);
+    /// Number of levels of each range, even.
+    whole("levels", 2).up_to(100.0).or(4.0);
+    /// Seed of the random trajectories.
+    whole("seed", 0).or(1.0);
+    /// The parameters with their ranges: paths as in `[set]`, each with `[FROM, TO]` or a table.
+    new("ranges", Kind::Named("\"TABLE.KEY\"", &DESIGN_ENDS)).required("{ \"run.safety_factor\" = [0.2, 0.8] }");
+}
+
+/// The range of a parameter.
+const DESIGN_ENDS: Kind = Kind::Either(&[Kind::List(&ANYTHING), Kind::Table(&DESIGN_RANGE)]);
+
+table_schema! {
+    /// The range of a parameter of a design.
+    pub(super) static DESIGN_RANGE = "Range of a design";
+
+    /// One end, a number with or without its unit.
+    new("from", ANYTHING).required("0.1");
+    /// The other end, in the same unit.
+    new("to", ANYTHING).required("0.9");
+    /// Spacing of the levels of `morris`.
+    new("spacing", Kind::Word(|| words_of(&SPACINGS))).or_word("linear");
+    /// Value from which it changes in `one-at-a-time`, in the same unit.
+    new("base", ANYTHING).otherwise("that of the scene");
+}
+
+/// Designs; true for trajectories.
+pub(super) const DESIGN_KINDS: [(&str, bool); 2] = [("one-at-a-time", false), ("morris", true)];
 
 /// Sizes of the values, and their labels.
 const SIZE: Key = Key::new(
@@ -137,8 +176,8 @@ table_schema! {
 }
 
 table_schema! {
-    /// A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve` and
-    /// `balance`.
+    /// A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve`, `balance`,
+    /// `fragment_size` and `run_time`.
     pub(crate) static MEASURE = "[measures.NAME]";
 
     /// A measure of the scene.
@@ -151,6 +190,10 @@ table_schema! {
     new("curve", Kind::Word(|| words_of(&CURVES)));
     /// The largest relative error of this balance in the run.
     new("balance", Kind::Word(|| words_of(&BALANCES)));
+    /// Sieve size up to which 10 %, 50 % or 80 % of the mass of all fragments is.
+    new("fragment_size", Kind::Word(|| words_of(SizeFigure::WORDS)));
+    /// Time of the steps without start-up, s; the median of the repeats.
+    new("run_time", Kind::Word(|| words_of(RunTime::WORDS)));
     /// Reference of the error: none, so that the response is shown; that of the scene's measure or
     /// the theory of the test's result; a value; the run of the smallest size along an axis; or the
     /// extrapolation of the runs to size 0.

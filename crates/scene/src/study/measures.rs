@@ -1,6 +1,8 @@
 //! The measures of each run, and their references.
 
-use super::contents::{Axis, BALANCES, CURVES, MeasureOf, Pieces, Reference, StudyMeasure};
+use super::contents::{
+    Axis, BALANCES, CURVES, MeasureOf, Pieces, Reference, RunTime, SizeFigure, StudyMeasure,
+};
 use super::keys::{MEASURE, REFERENCE};
 use crate::field::Field;
 use crate::names::suggestion;
@@ -30,6 +32,8 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
         "fragment_masses",
         "curve",
         "balance",
+        "fragment_size",
+        "run_time",
     ];
     let one = "a measure is of one of them: remove the other";
     let of = match table.at_most_one(&kinds, one)? {
@@ -41,18 +45,28 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
             field.choice(&CURVES)?;
             MeasureOf::Curve
         }
-        Some((_, field)) => MeasureOf::Balance(field.choice(&BALANCES)?),
+        Some(("balance", field)) => MeasureOf::Balance(field.choice(&BALANCES)?),
+        Some(("fragment_size", field)) => MeasureOf::Size(field.choice(SizeFigure::WORDS)?),
+        Some((_, field)) => MeasureOf::RunTime(field.choice(RunTime::WORDS)?),
     };
     let reference = match table.get("reference") {
         Some(field) if matches!(of, MeasureOf::Balance(_)) => {
             let problem = "is given for a balance, whose error is compared with 0";
             return Err(field.fault(problem, "it is an error by itself: remove reference"));
         }
+        Some(field) if matches!(of, MeasureOf::RunTime(_)) => {
+            let problem = "is given for a run time, which has none";
+            return Err(field.fault(problem, "remove reference"));
+        }
         Some(field) => reference(&field, axes)?,
         None => match of {
             MeasureOf::Balance(_) => Reference::ClosedForm,
             MeasureOf::Measure(_) => Reference::IfAny,
-            MeasureOf::Figure(_) | MeasureOf::Masses(_) | MeasureOf::Curve => Reference::None,
+            MeasureOf::Figure(_)
+            | MeasureOf::Masses(_)
+            | MeasureOf::Curve
+            | MeasureOf::Size(_)
+            | MeasureOf::RunTime(_) => Reference::None,
         },
     };
     if let (MeasureOf::Masses(_) | MeasureOf::Curve, false) = (

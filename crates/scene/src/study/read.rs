@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::contents::{Axis, Combine, Find, STUDY_VERSION, Setting, Study, StudyMeasure};
+use super::contents::{Axis, Combine, Design, Find, STUDY_VERSION, Setting, Study, StudyMeasure};
+use super::design;
 use super::find;
-use super::keys::{FIND, MOST_REPEATS, PAGE, STUDY};
+use super::keys::{DESIGN, FIND, MOST_REPEATS, PAGE, STUDY};
 use super::measures::{axis_named, measure};
 use super::values::{self, MOST_VALUES, tidy};
 use crate::field::Field;
@@ -18,7 +19,7 @@ const MOST_AXES: usize = 100;
 /// Largest number of cases of a search.
 const MOST_CASES: u64 = 10_000;
 /// Axis over which responses are averaged unless another one is given.
-const SEED: &str = "run.seed";
+pub(super) const SEED: &str = "run.seed";
 
 /// Reads a study from a TOML file.
 pub fn read_study(path: &Path) -> Result<Study> {
@@ -36,12 +37,16 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     root.refuse_unknown()?;
     let folder = Path::new(source).parent().unwrap_or(Path::new(""));
     let find = root.read_by("find", |field| Table::of(&field, &FIND))?;
-    let axes = axes(&root, find.as_ref(), folder)?;
+    let (design, axes) = axes(&root, find.as_ref(), folder)?;
     refuse_set_twice(&axes)?;
     let fixed = fixed(&root, &axes, folder)?;
-    let measures = measures(&root, &axes)?;
+    let mut measures = measures(&root, &axes)?;
     let combine = root.read("combine")?;
     let average_over = average_over(&root, combine, &axes)?;
+    if let Some(design) = &design {
+        design::refuse_others(&axes, design.ranges.len(), average_over)?;
+        design::without_references(&mut measures)?;
+    }
     let find = match find {
         Some(find) => Some(search(&find, &measures, combine, average_over, &axes)?),
         None => None,
@@ -60,6 +65,7 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         average_over,
         statistic: find::statistic(&root)?,
         find,
+        design,
         series: series.or_else(|| axes.iter().position(|axis| axis.sizes().is_none())),
         fixed,
         axes,
@@ -67,9 +73,17 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     })
 }
 
-/// The axes of `[find]`, `[vary]` and `[together]`, at least one.
-fn axes(root: &Table<'_>, find: Option<&Table<'_>>, folder: &Path) -> Result<Vec<Axis>> {
-    let mut axes = Vec::new();
+/// The axes of `[find]` or `[design]`, `[vary]` and `[together]`, at least one, and the design.
+fn axes(
+    root: &Table<'_>,
+    find: Option<&Table<'_>>,
+    folder: &Path,
+) -> Result<(Option<Design>, Vec<Axis>)> {
+    let design = root.read_by("design", |field| {
+        design::read(root, &Table::of(&field, &DESIGN)?)
+    })?;
+    let (design, mut axes) =
+        design.map_or((None, Vec::new()), |(design, axes)| (Some(design), axes));
     if let Some(find) = find {
         axes.push(find::axis(find, folder)?);
     }
@@ -90,7 +104,7 @@ fn axes(root: &Table<'_>, find: Option<&Table<'_>>, folder: &Path) -> Result<Vec
         let remedy = "add [vary] with \"run.safety_factor\" = [0.9, 0.5], say";
         return Err(root.refuse("nothing varies", remedy));
     }
-    Ok(axes)
+    Ok((design, axes))
 }
 
 /// The settings of `[set]`, none of which varies.

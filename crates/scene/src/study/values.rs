@@ -302,7 +302,8 @@ fn shown(value: f64) -> String {
     }
 }
 
-fn named(unit: &str) -> String {
+/// A unit in messages.
+pub(super) fn named(unit: &str) -> String {
     if unit.is_empty() {
         "no unit".to_owned()
     } else {

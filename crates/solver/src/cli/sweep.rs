@@ -5,15 +5,17 @@ mod results;
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dem_io::safe_write::write_file;
+use dem_io::text::visible;
 use dem_io::write_target::{need_folder_of, refuse_input};
 use dem_io::{Diagnostic, Result};
 use dem_scene::study::{
-    Combine, MeasureOf, Reference, Study, read_study, reference_values, rewritten, scene_with,
-    settle_references, value_to_find,
+    Combine, MeasureOf, Reference, RunTime, Study, StudyMeasure, read_study, reference_values,
+    rewritten, scene_with, settle_references, value_to_find,
 };
 use dem_scene::text_of;
 use dem_terminal::progress::progress_bar;
@@ -24,6 +26,7 @@ use super::progress::{Log, Tell, is_logged};
 use crate::interrupt::Interrupt;
 use dem_laboratory::test_result::T10;
 use dem_study::collect::outcome;
+use dem_study::design::in_words;
 use dem_study::expand::{MOST_UNASKED, Run, runs};
 use dem_study::folder::{Earlier, SweepFolder};
 use dem_study::jobs::{Job, further_jobs, jobs, refuse_unlistable, work};
@@ -80,13 +83,21 @@ pub(super) struct SweepArguments {
 /// the runs have come.
 pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt, tell: Tell<'_>) -> Result<()> {
     let mut sweep = Sweep::prepared(options)?;
+    if let Some(design) = &sweep.study.design
+        && !options.quiet
+        && !options.collect
+    {
+        let words = in_words(&sweep.study, design);
+        // A closed output is not a reason to stop.
+        let _ = writeln!(std::io::stderr(), "design {}", visible(&words));
+    }
     let Some(mut table) = sweep.table(options, interrupt, tell)? else {
         return Ok(());
     };
     if options.list {
         return Ok(());
     }
-    if options.jobs > 1 && table.has_errors() {
+    if options.jobs > 1 && (table.has_errors() || measures_wall_time(&sweep.study)) {
         table.notes.push(format!(
             "{} runs at a time: they disturb each other's times",
             options.jobs
@@ -130,6 +141,7 @@ impl Sweep {
         }
         let scene_text = text_of(&study.scene, "a scene")
             .map_err(|error| error.within(&format!("{}: scene", study.source)))?;
+        study.settle_design(&scene_text)?;
         // What is wrong with it is said when the scenes of all runs are checked.
         let first = scene_with(&study, &scene_text, study.first_settings()).ok();
         if let Some(first) = &first {
@@ -235,6 +247,12 @@ impl Sweep {
             .or_else(|| not_found(study, table))
             .map_or(Ok(()), Err)
     }
+}
+
+/// True if a measure is a wall time, which other runs disturb.
+fn measures_wall_time(study: &Study) -> bool {
+    let is_time = |measure: &StudyMeasure| measure.of == MeasureOf::RunTime(RunTime::Wall);
+    study.measures.iter().any(is_time)
 }
 
 /// The errors that are asked for, of measures with a reference.
@@ -432,7 +450,8 @@ fn checked(
     scene_text: &str,
     all: &[Run],
 ) -> Result<(Vec<Option<f64>>, Vec<PathBuf>)> {
-    let are_many = study.combine == Combine::Grid && all.len() as u64 > MOST_UNASKED;
+    let is_grid = study.combine == Combine::Grid && study.design.is_none();
+    let are_many = is_grid && all.len() as u64 > MOST_UNASKED;
     let differs_once = |run: &&Run| run.choice.iter().filter(|at| **at > 0).count() <= 1;
     let mut values = Vec::new();
     let mut files = BTreeSet::new();

@@ -1,6 +1,7 @@
 //! Sweeps: studies as input; tables, pages and the fastest setting as output.
 
 mod curves;
+mod designs;
 mod failed;
 mod lists;
 mod pieces;

@@ -19,6 +19,9 @@ use dem_study::folder::SweepFolder;
 use dem_study::jobs::{Job, arguments, refuse_unlistable, scene_arguments, shell_line};
 use dem_study::page::page;
 use dem_study::plot::plot;
+use dem_study::ranking::{DesignTable, Rankings};
+use dem_study::ranking_plot::{change_bars, morris_bars, sigma_plot};
+use dem_study::ranking_text::effects_csv;
 use dem_study::response_plot::{found_plots, plots};
 use dem_study::row::Row;
 use dem_study::sweep_table::SweepTable;
@@ -58,8 +61,8 @@ pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolde
     })
 }
 
-/// `sweep.csv`, `responses.csv`, `find.csv`, `sweep.json`, `sweep.html` and the plots of each
-/// measure.
+/// `sweep.csv`, `responses.csv`, `find.csv`, `effects.csv`, `sweep.json`, `sweep.html` and the
+/// plots of each measure.
 pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
     let file = |name: &str| folder.path().join(name);
     write_file(&file("sweep.csv"), |out| {
@@ -94,6 +97,12 @@ pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()
             write_plot_file(&path, &plot.svg().file())?;
         }
     }
+    if let Some(design) = &table.design {
+        write_file(&file("effects.csv"), |out| {
+            out.write_all(effects_csv(table, design).as_bytes())
+        })?;
+        return write_rankings(folder, table, design);
+    }
     for response in &table.responses {
         let measure = &table.measures[response.measure];
         let is_compared = measure.reference.is_some();
@@ -105,6 +114,32 @@ pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()
                 number => format!("{}.response.{number}.svg", measure.name),
             };
             write_plot_file(&file(&name), &plot.svg().file())?;
+        }
+    }
+    Ok(())
+}
+
+/// The plots of a design: `NAME.svg`, the ranking of each measure, and for trajectories
+/// `NAME.sigma.svg`.
+fn write_rankings(folder: &SweepFolder, table: &SweepTable, design: &DesignTable) -> Result<()> {
+    let file = |measure: usize, ending: &str| {
+        let name = &table.measures[measure].name;
+        folder.path().join(format!("{name}{ending}"))
+    };
+    match &design.rankings {
+        Rankings::Morris(rankings) => {
+            for one in rankings {
+                let bars = morris_bars(table, design, one).svg();
+                write_plot_file(&file(one.measure, ".svg"), &bars.file())?;
+                let plot = sigma_plot(table, design, one).svg();
+                write_plot_file(&file(one.measure, ".sigma.svg"), &plot.file())?;
+            }
+        }
+        Rankings::OneAtATime(rankings) => {
+            for one in rankings {
+                let bars = change_bars(table, design, one).svg();
+                write_plot_file(&file(one.measure, ".svg"), &bars.file())?;
+            }
         }
     }
     Ok(())

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use serde_json::Value;
+
 use super::{bad, bench, good, json};
 
 /// Pieces that are discharged.
@@ -18,6 +20,8 @@ reference = "finest"
 [measures.rest]
 fragment_masses = "remaining"
 reference = "finest"
+[measures.d50]
+fragment_size = "d50"
 "#;
 
 #[test]
@@ -60,6 +64,14 @@ fn distributions_of_masses_are_compared() {
     assert!((of(0, 0)["uncertainty"].as_f64().unwrap() - chance).abs() < 1e-12);
     assert!(of(2, 0)["is_reference"] == true && of(2, 0)["error"].is_null());
     assert!(of(0, 1)["value"].as_f64().unwrap() >= 1.0);
+    let summary = fs::read(bench.path("study-sweep/runs/0001-1/summary.json")).unwrap();
+    let summary: Value = serde_json::from_slice(&summary).unwrap();
+    let d50_m = &summary["sizes"]["all"]["both"]["d50_m"];
+    assert!(
+        of(0, 2)["value"] == *d50_m && d50_m.as_f64().unwrap() > 0.0,
+        "{d50_m}"
+    );
+    assert_eq!(table["measures"][2]["unit"], "m");
 }
 
 #[test]
