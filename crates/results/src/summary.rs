@@ -17,7 +17,6 @@ pub use contents::{COARSE, Summary, Trust, Unfinished, Verdict};
 pub use equilibrium::EquilibriumSummary;
 pub use inputs::{InputBody, InputFile, Inputs};
 pub use measured::Measured;
-pub use named::RUN_RESULTS;
 pub use parts::{
     AdaptiveSummary, BodyFlow, FragmentSummary, OutletSummary, PartError, PopulationSummary,
     SleepSummary, TakenIn,

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use dem_results::Summary;
-use dem_scene::study::{MeasureOf, Reference, RunTime, SizeFigure, Study};
+use dem_scene::study::{MeasureOf, RUN_RESULTS, Reference, RunTime, Study};
 
 use super::curves::{curve, largest_n};
 use super::jobs::Job;
@@ -67,20 +67,6 @@ fn done(study: &Study, summary: &Summary, results: &Path) -> Result<Done, String
     })
 }
 
-/// A size of all fragments of a run, m.
-fn size_m(figure: SizeFigure, summary: &Summary) -> Result<f64, String> {
-    let sizes = summary
-        .sizes
-        .as_ref()
-        .and_then(|sizes| sizes.all.get("both"));
-    let sizes = sizes.ok_or("its summary has no sizes of fragments: nothing can break")?;
-    Ok(match figure {
-        SizeFigure::D10 => sizes.d10_m,
-        SizeFigure::D50 => sizes.d50_m,
-        SizeFigure::D80 => sizes.d80_m,
-    })
-}
-
 /// Time of the steps of a run, s.
 fn time_s(time: RunTime, summary: &Summary) -> Result<f64, String> {
     match time {
@@ -113,10 +99,15 @@ fn reading(summary: &Summary, results: &Path, of: &MeasureOf) -> Result<Reading,
                 ..plain(time_s(*time, summary)?)
             });
         }
-        MeasureOf::Size(figure) => {
+        MeasureOf::RunResult(name) => {
+            let found = summary.run_result(name);
+            let units = RUN_RESULTS.iter().find(|(known, _)| known == name);
+            let (Some(value), Some((_, unit))) = (found, units) else {
+                return Err(format!("its fragments have no {name}"));
+            };
             return Ok(Reading {
-                unit: "m".to_owned(),
-                ..plain(size_m(*figure, summary)?)
+                unit: (*unit).to_owned(),
+                ..plain(value)
             });
         }
         MeasureOf::Masses(pieces) => {

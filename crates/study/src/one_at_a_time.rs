@@ -4,7 +4,7 @@
 use dem_laboratory::Statistic;
 use serde::Serialize;
 
-use dem_calibration::student_95;
+use dem_laboratory::student_95;
 
 /// The points of the design, as the index of the value of each parameter: the base, then each
 /// parameter at its other values in turn. `bases` and `values`: for each parameter the index of

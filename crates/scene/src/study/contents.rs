@@ -283,19 +283,8 @@ pub enum MeasureOf {
     Balance(&'static str),
     /// `run_time`: the time of the steps, s.
     RunTime(RunTime),
-    /// `fragment_size`: the size up to which a fraction of the mass of all fragments is, m.
-    Size(SizeFigure),
-}
-
-/// A size of fragments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SizeFigure {
-    /// "d10"
-    D10,
-    /// "d50"
-    D50,
-    /// "d80"
-    D80,
+    /// `run_result`: one of [`RUN_RESULTS`].
+    RunResult(String),
 }
 
 /// The pieces whose masses are compared.
@@ -332,17 +321,28 @@ pub(super) const BALANCES: [(&str, &str); 3] = [
     ("angular-momentum", "angular_momentum_error"),
 ];
 
+/// Results of every run with fragments, and their units: sieve sizes up to which a fraction of the
+/// mass is and t10, of all fragments and of those that left through outlets, and masses.
+pub const RUN_RESULTS: [(&str, &str); 11] = [
+    ("d10", "m"),
+    ("d50", "m"),
+    ("d80", "m"),
+    ("t10", ""),
+    ("discharged_d10", "m"),
+    ("discharged_d50", "m"),
+    ("discharged_d80", "m"),
+    ("discharged_t10", ""),
+    ("discharged_mass", "kg"),
+    ("fines_mass", "kg"),
+    ("mass_fraction_of_largest", ""),
+];
+
 /// The curves of a laboratory test.
 pub(super) const CURVES: [(&str, ()); 1] = [("force-displacement", ())];
 
 impl Word for Pieces {
     const WORDS: &'static [(&'static str, Self)] =
         &[("discharged", Self::Left), ("remaining", Self::AtEnd)];
-}
-
-impl Word for SizeFigure {
-    const WORDS: &'static [(&'static str, Self)] =
-        &[("d10", Self::D10), ("d50", Self::D50), ("d80", Self::D80)];
 }
 
 impl Word for RunTime {

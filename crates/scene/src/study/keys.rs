@@ -1,6 +1,6 @@
 //! The keys of a study.
 
-use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RunTime, SizeFigure};
+use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RUN_RESULTS, RunTime};
 use crate::schema::{Key, Kind, Word, table_schema, words_of};
 
 /// Largest number of threads.
@@ -177,7 +177,7 @@ table_schema! {
 
 table_schema! {
     /// A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve`, `balance`,
-    /// `fragment_size` and `run_time`.
+    /// `run_result` and `run_time`.
     pub(crate) static MEASURE = "[measures.NAME]";
 
     /// A measure of the scene.
@@ -190,8 +190,9 @@ table_schema! {
     new("curve", Kind::Word(|| words_of(&CURVES)));
     /// The largest relative error of this balance in the run.
     new("balance", Kind::Word(|| words_of(&BALANCES)));
-    /// Sieve size up to which 10 %, 50 % or 80 % of the mass of all fragments is.
-    new("fragment_size", Kind::Word(|| words_of(SizeFigure::WORDS)));
+    /// A result of the fragments: `d50` and so on are sieve sizes up to which a fraction of the mass
+    /// is, of all fragments or of those that left through outlets.
+    new("run_result", Kind::Word(|| words_of(&RUN_RESULTS)));
     /// Time of the steps without start-up, s; the median of the repeats.
     new("run_time", Kind::Word(|| words_of(RunTime::WORDS)));
     /// Reference of the error: none, so that the response is shown; that of the scene's measure or

@@ -1,7 +1,7 @@
 //! The measures of each run, and their references.
 
 use super::contents::{
-    Axis, BALANCES, CURVES, MeasureOf, Pieces, Reference, RunTime, SizeFigure, StudyMeasure,
+    Axis, BALANCES, CURVES, MeasureOf, Pieces, RUN_RESULTS, Reference, RunTime, StudyMeasure,
 };
 use super::keys::{MEASURE, REFERENCE};
 use crate::field::Field;
@@ -32,7 +32,7 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
         "fragment_masses",
         "curve",
         "balance",
-        "fragment_size",
+        "run_result",
         "run_time",
     ];
     let one = "a measure is of one of them: remove the other";
@@ -46,7 +46,10 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
             MeasureOf::Curve
         }
         Some(("balance", field)) => MeasureOf::Balance(field.choice(&BALANCES)?),
-        Some(("fragment_size", field)) => MeasureOf::Size(field.choice(SizeFigure::WORDS)?),
+        Some(("run_result", field)) => {
+            field.choice(&RUN_RESULTS)?;
+            MeasureOf::RunResult(field.text()?.to_owned())
+        }
         Some((_, field)) => MeasureOf::RunTime(field.choice(RunTime::WORDS)?),
     };
     let reference = match table.get("reference") {
@@ -65,7 +68,7 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
             MeasureOf::Figure(_)
             | MeasureOf::Masses(_)
             | MeasureOf::Curve
-            | MeasureOf::Size(_)
+            | MeasureOf::RunResult(_)
             | MeasureOf::RunTime(_) => Reference::None,
         },
     };

@@ -135,7 +135,7 @@ impl Bench<'_> {
         let result = |unknown: &Unknown| {
             let of_test = test.and_then(|test| test.figure(&unknown.result));
             let measure = measures().find(|measure| measure.name == unknown.result);
-            let of_run = || summary.run_result(&unknown.result).map(|(value, _)| value);
+            let of_run = || summary.run_result(&unknown.result);
             let value = of_test
                 .or(measure.map(|measure| measure.value))
                 .or_else(of_run);

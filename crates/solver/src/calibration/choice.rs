@@ -4,10 +4,10 @@ use dem_calibration::{Number, Unknown};
 use dem_io::units::quantity;
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
+use dem_scene::study::RUN_RESULTS;
 use dem_scene::{Scene, Test, written_value};
 
 use dem_laboratory::test_result::STIFFNESS;
-use dem_results::summary::RUN_RESULTS;
 use dem_rig::dynamic::DYNAMIC_RESULTS;
 use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STRENGTH};
 
@@ -139,7 +139,7 @@ impl Chooser<'_> {
                 Some(_) => &RESULTS,
             };
             let known: Vec<&str> = (measures.chain(of_test.iter().copied()))
-                .chain(RUN_RESULTS)
+                .chain(RUN_RESULTS.map(|(name, _)| name))
                 .collect();
             if !known.contains(&result) {
                 let problem = format!("the scene has no measure or test result '{result}'");

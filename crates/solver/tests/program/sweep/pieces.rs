@@ -21,7 +21,7 @@ reference = "finest"
 fragment_masses = "remaining"
 reference = "finest"
 [measures.d50]
-fragment_size = "d50"
+run_result = "d50"
 "#;
 
 #[test]
