@@ -136,6 +136,8 @@ fn shortened(line: &str) -> Option<String> {
         .replace(" -o tablet.toml --", " -o tablet.toml --packings 2 --")
         .replace(" 4.6mm..5.1mm", " 10mm..12mm")
         .replace("/lumps.toml", "/lumps.toml --set run.end_time=0.1")
+        .replace("-crusher-ore.toml", "-crusher-ore.toml --set run.end_time=0.4")
+        .replace("/crusher-gap.toml", "/crusher-gap.toml --list")
         .replace(
             " data/studies/spinning-bar.toml",
             " data/studies/spinning-bar.toml --jobs 2",
@@ -247,6 +249,12 @@ fn commands_for_the_transfer_chute_run() {
         "liner-sweep/sweep.html",
     ];
     run_commands("doc/transfer-chute.md", 3, &made);
+}
+
+#[test]
+fn commands_from_drop_weight_sheets_to_a_crusher_run() {
+    let made = ["quartzite.toml", "ore.html", "crusher/report.html"];
+    run_commands("doc/breakage.md", 5, &made);
 }
 
 #[test]
