@@ -7,6 +7,7 @@ use dem_engine::state::particles::{Particles, Wrench};
 use dem_engine::step::step;
 use dem_physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
 use dem_physics::bond::damping_models::{Chen, ChenByMode, Platzer};
+use dem_physics::bond::rate_strengthening::{IncreaseCurve, RateStrengthening};
 use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_physics::bond::total::direction;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -19,10 +20,18 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     damped: false,
     structural_damping: 0.0,
     criteria: None,
-    strengthening_from_1_s: None,
+    strengthening: None,
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
     contact_beside: false,
 };
+
+/// Strengths that rise by eq. 20 of Platzer 2022 above this rate, 1/s.
+pub(crate) const fn eq_20(from_1_s: f64) -> Option<RateStrengthening> {
+    Some(RateStrengthening {
+        curve: IncreaseCurve::Platzer { from_1_s },
+        keeps_largest: false,
+    })
+}
 
 /// The elastic law, by this formulation.
 pub(crate) fn law(incremental: bool) -> BondLaw {

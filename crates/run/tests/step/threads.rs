@@ -16,6 +16,7 @@ use dem_engine::state::supports::GroupSupport;
 use dem_engine::state::supports::HeldParticle;
 use dem_physics::bond::damage::Damage;
 use dem_physics::bond::failure::{Criteria, EquivalentStress};
+use dem_physics::bond::rate_strengthening::{IncreaseCurve, RateStrengthening};
 use dem_physics::bond::stiffness::BondModel;
 use dem_scene::{Factor, Hold};
 
@@ -32,7 +33,10 @@ const BREAKING: BondRule = BondRule {
         von_mises_strength_pa: 0.12e6,
         equivalent_stress: EquivalentStress::AxialInTension,
     }),
-    strengthening_from_1_s: Some(1.1),
+    strengthening: Some(RateStrengthening {
+        curve: IncreaseCurve::Platzer { from_1_s: 1.1 },
+        keeps_largest: true,
+    }),
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
     contact_beside: false,
 };

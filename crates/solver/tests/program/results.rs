@@ -64,7 +64,7 @@ fn events_tell_every_bond_that_broke() {
     let (columns, rows) = table(&bench.path("out/events.csv"));
     assert_eq!(
         columns.join(","),
-        "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail"
+        "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail,strain_rate_1_s,dynamic_increase_factor"
     );
     let rows: Vec<_> = rows
         .into_iter()
