@@ -83,7 +83,7 @@ impl BondDamping {
 }
 
 /// Properties of a body.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Bonding {
     /// Radius of a bond over that of the smaller of its two spheres.
     pub(crate) radius_factor: f64,
@@ -100,7 +100,7 @@ pub(crate) fn add_bonds(
     of: &Bonding,
 ) {
     let rule = bonds.rules.len();
-    bonds.rules = bonds.rules.iter().copied().chain([of.rule]).collect();
+    bonds.rules = bonds.rules.iter().chain([&of.rule]).cloned().collect();
     for &[a, b] in pairs {
         let apart = particles.poses[b as usize].place() - particles.poses[a as usize].place();
         let radii = [a, b].map(|end| particles.poses[end as usize].radius_m());
@@ -204,7 +204,7 @@ pub(crate) fn damp(state: &mut State, damping: BondDamping) {
     state.bonds.damping = (0..state.bonds.len()).map(of_bond).collect();
     let damped = |rule: &BondRule| BondRule {
         damped: true,
-        ..*rule
+        ..rule.clone()
     };
     state.bonds.rules = state.bonds.rules.iter().map(damped).collect();
     state.divide();
