@@ -12,6 +12,10 @@ use crate::specimen::TestType;
 pub const STIFFNESS: &str = "stiffness";
 /// Largest deviation of a lateral pressure from the one wanted, up to the largest load.
 pub const PRESSURE_OFF: &str = "deviation of the lateral pressure";
+/// Rate of strain while the load rises, 1/s.
+pub const STRAIN_RATE: &str = "strain rate";
+/// Strength over the static one.
+pub const INCREASE_FACTOR: &str = "dynamic increase factor";
 /// Largest difference of the forces on both ends between half of the largest load and all of it,
 /// over the largest load.
 pub const EQUILIBRIUM: &str = "force equilibrium";

@@ -222,7 +222,7 @@ fn misfits_of_law(rule: &BondRule) -> [Misfit; 6] {
             LEAVE_OUT,
         ),
         (
-            rule.strengthening_from_1_s.is_some(),
+            rule.strengthening.is_some(),
             "failure.rate_strengthening",
             "strengths of bpm/rotational do not depend on the strain rate",
             LEAVE_OUT,

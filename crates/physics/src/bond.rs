@@ -11,6 +11,7 @@ pub mod incremental;
 pub mod models;
 pub mod pair;
 pub mod plasticity;
+pub mod rate_strengthening;
 pub mod rod;
 pub mod scatter;
 pub mod stiffness;

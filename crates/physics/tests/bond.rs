@@ -4,6 +4,7 @@ mod damping;
 mod failure;
 mod incremental;
 mod pair;
+mod rate_strengthening;
 mod scatter;
 mod stiffness;
 mod strain_rate;

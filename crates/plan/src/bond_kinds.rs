@@ -1,10 +1,11 @@
 //! Kinds of bonds of a scene: their models, laws and strengths.
 
-use dem_scene::{BondDamping, BondKind, Formulation};
+use dem_scene::{BondDamping, BondFailure, BondKind, Formulation};
 
 use dem_engine::state::bonds::{BondLaw, BondRule};
 use dem_physics::bond::failure::{Criteria, has_strength};
 use dem_physics::bond::plasticity::Plasticity;
+use dem_physics::bond::rate_strengthening::RateStrengthening;
 
 /// The law of a kind of bonds, of which the scene allows one.
 fn law(kind: &BondKind) -> BondLaw {
@@ -33,6 +34,16 @@ fn law(kind: &BondKind) -> BondLaw {
     }
 }
 
+/// How the strengths of a kind of bonds rise with the strain rate. None: they do not.
+pub fn strengthening(failure: &BondFailure) -> Option<RateStrengthening> {
+    let curve = failure.rate_strengthening.clone()?;
+    let keeps_largest = failure.keeps_largest_factor;
+    Some(RateStrengthening {
+        curve,
+        keeps_largest,
+    })
+}
+
 /// What the bonds of a kind share.
 pub(super) fn rule(kind: &BondKind) -> BondRule {
     let failure = &kind.failure;
@@ -56,7 +67,7 @@ pub(super) fn rule(kind: &BondKind) -> BondRule {
         damped: kind.damping != undamped,
         structural_damping: kind.damping.structural_damping,
         criteria: has_strength(&criteria).then_some(criteria),
-        strengthening_from_1_s: failure.rate_strengthening_from_1_s,
+        strengthening: strengthening(failure),
         strain_rate_measure: failure.strain_rate_measure,
         contact_beside: kind.contact_beside_bond,
     }

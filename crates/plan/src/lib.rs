@@ -3,7 +3,7 @@
 
 pub mod alike;
 pub mod bodies;
-mod bond_kinds;
+pub mod bond_kinds;
 mod bonds;
 pub mod bounces;
 mod clumps;

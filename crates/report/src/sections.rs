@@ -20,7 +20,7 @@ pub(crate) use results::{add_results, add_test};
 pub(crate) use time::add_time;
 
 /// Plots that come first, in this order.
-const FIRST_PLOTS: [&str; 12] = [
+const FIRST_PLOTS: [&str; 13] = [
     "bar-signals",
     "gauge-signals",
     "stress-strain",
@@ -32,6 +32,7 @@ const FIRST_PLOTS: [&str; 12] = [
     "discharged_mass",
     "fragments",
     "broken_bonds",
+    "rate_strengthening",
     "energy",
 ];
 

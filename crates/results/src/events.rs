@@ -3,8 +3,14 @@
 //!
 //! Columns: see [`Event::COLUMNS`]. Values that do not apply to an event are empty.
 
+use std::io::BufRead;
+use std::path::Path;
+
 use super::columns::{Column, known, lines};
-use super::growing::field;
+use super::growing::{field, fields};
+use dem_io::diagnostic::{Diagnostic, Result};
+use dem_io::lines::{Lines, float, on_line};
+use dem_io::open_input;
 use dem_io::text::exact;
 
 /// One event.
@@ -30,11 +36,13 @@ pub struct Event<'a> {
     pub energy_j: Option<f64>,
     /// Further human-readable details. May be empty.
     pub detail: &'a str,
+    /// Strain rate that determined the strength of a bond, 1/s, and the factor on it.
+    pub strengthened: Option<[f64; 2]>,
 }
 
 impl Event<'_> {
     /// The columns of its table.
-    pub const COLUMNS: [Column<Self>; 12] = [
+    pub const COLUMNS: [Column<Self>; 14] = [
         ("step", |row| row.step.to_string()),
         ("time_s", |row| exact(row.time_s)),
         ("event", |row| field(row.kind)),
@@ -47,8 +55,13 @@ impl Event<'_> {
         ("cause", |row| field(row.cause)),
         ("energy_j", |row| known(row.energy_j.map(exact))),
         ("detail", |row| field(row.detail)),
+        (STRENGTHENED[0], |row| strengthened(row, 0)),
+        (STRENGTHENED[1], |row| strengthened(row, 1)),
     ];
 }
+
+/// Columns of the strain rate that determined the strength of a bond, and of the factor on it.
+const STRENGTHENED: [&str; 2] = ["strain_rate_1_s", "dynamic_increase_factor"];
 
 /// Lines of the table of events.
 pub fn event_lines<'a>(events: impl IntoIterator<Item = Event<'a>>) -> String {
@@ -57,4 +70,40 @@ pub fn event_lines<'a>(events: impl IntoIterator<Item = Event<'a>>) -> String {
 
 fn place(event: &Event<'_>, axis: usize) -> String {
     known(event.position_m.map(|place_m| exact(place_m[axis])))
+}
+
+fn strengthened(event: &Event<'_>, which: usize) -> String {
+    known(event.strengthened.map(|both| exact(both[which])))
+}
+
+/// Strain rates, 1/s, and factors on the strengths of the bonds that have broken with them, from
+/// the table at `path`.
+pub fn read_strengthened(path: &Path) -> Result<Vec<[f64; 2]>> {
+    let within = |error: Diagnostic| error.within(&path.display().to_string());
+    read_lines(&mut open_input(path)?).map_err(within)
+}
+
+fn read_lines(input: &mut dyn BufRead) -> Result<Vec<[f64; 2]>> {
+    let mut lines = Lines::new(input);
+    let (_, first) = lines.next_line()?.unwrap_or((1, ""));
+    let names = fields(first);
+    let places = STRENGTHENED.map(|name| names.iter().position(|known| known == name));
+    let [Some(rate), Some(factor)] = places else {
+        return Ok(Vec::new());
+    };
+    let mut found = Vec::new();
+    while let Some((number, line)) = lines.next_line()? {
+        let fields = fields(line);
+        let text = |at: usize| {
+            fields
+                .get(at)
+                .map(String::as_str)
+                .filter(|text| !text.is_empty())
+        };
+        if let (Some(rate), Some(factor)) = (text(rate), text(factor)) {
+            let read = |text, name| float(Some(text), name).map_err(|error| on_line(number, error));
+            found.push([read(rate, STRENGTHENED[0])?, read(factor, STRENGTHENED[1])?]);
+        }
+    }
+    Ok(found)
 }

@@ -23,7 +23,7 @@ pub(crate) mod walls;
 
 pub use arrays::{Array, Arrays, read_all_arrays, read_arrays};
 pub use discharge::{DischargeRow, DistributionRow};
-pub use events::{Event, event_lines};
+pub use events::{Event, event_lines, read_strengthened};
 pub use flows::{FlowRow, MixingRow};
 pub use folder::{Existing, ResultsFolder};
 pub use fragments::{FragmentRow, TreeRow, append_fragments};

@@ -19,7 +19,9 @@ use super::evaluate::{
 use super::record::{Record, Row};
 use dem_engine::state::loads::factor_at;
 use dem_laboratory::figure::{Figure, Source};
-use dem_laboratory::test_result::{EQUILIBRIUM, LARGEST_T10, T10, TestResult, UNBOOKED};
+use dem_laboratory::test_result::{
+    EQUILIBRIUM, INCREASE_FACTOR, LARGEST_T10, STRAIN_RATE, T10, TestResult, UNBOOKED,
+};
 use dem_physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 
 /// Fraction of the largest load from which on the body counts as loaded.
@@ -41,10 +43,6 @@ const J_KG_PER_KWH_T: f64 = 3600.0;
 
 /// Largest stress, Pa, of a body that did not break.
 pub const LARGEST_STRESS: &str = "largest stress";
-/// Rate of strain while the load rises, 1/s.
-pub const STRAIN_RATE: &str = "strain rate";
-/// Strength over the static one.
-pub const INCREASE_FACTOR: &str = "dynamic increase factor";
 
 /// Names of the results of dynamic tests that a body can be calibrated to; each test has some of
 /// them.

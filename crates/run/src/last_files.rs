@@ -6,6 +6,7 @@ pub mod flows;
 pub mod fragments;
 mod last_state;
 pub(crate) mod plots;
+pub mod strengthening;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -24,6 +25,7 @@ use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
 use super::snapshot::fingerprint;
 use crate::last_files::plots::{plots_of_every_run, write_plots};
+use crate::last_files::strengthening::strengthening_plot;
 use dem_plan::Plan;
 use dem_plan::measure::{Probe, probes};
 use dem_rig::watch::Watch;
@@ -33,7 +35,12 @@ type WriteTable = fn(&LastState<'_>) -> Result<Vec<PathBuf>>;
 
 /// All tables and plots of the last state: that of the checkpoint, half a step later, would change
 /// them.
-const TABLES: [WriteTable; 3] = [tables::fragments, tables::flow, tables::mixing];
+const TABLES: [WriteTable; 4] = [
+    tables::fragments,
+    tables::flow,
+    tables::mixing,
+    strengthening_plot,
+];
 
 /// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page
 /// and summary.

@@ -7,6 +7,7 @@ use dem_engine::state::particles::{Particles, Wrench};
 use dem_engine::step::step;
 use dem_physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
 use dem_physics::bond::damping_models::{Chen, ChenByMode, Platzer};
+use dem_physics::bond::rate_strengthening::{IncreaseCurve, RateStrengthening};
 use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_physics::bond::total::direction;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -19,10 +20,18 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     damped: false,
     structural_damping: 0.0,
     criteria: None,
-    strengthening_from_1_s: None,
+    strengthening: None,
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
     contact_beside: false,
 };
+
+/// Strengths that rise by eq. 20 of Platzer 2022 above this rate, 1/s.
+pub(crate) const fn eq_20(from_1_s: f64) -> Option<RateStrengthening> {
+    Some(RateStrengthening {
+        curve: IncreaseCurve::Platzer { from_1_s },
+        keeps_largest: false,
+    })
+}
 
 /// The elastic law, by this formulation.
 pub(crate) fn law(incremental: bool) -> BondLaw {
@@ -74,7 +83,7 @@ impl BondDamping {
 }
 
 /// Properties of a body.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Bonding {
     /// Radius of a bond over that of the smaller of its two spheres.
     pub(crate) radius_factor: f64,
@@ -91,7 +100,7 @@ pub(crate) fn add_bonds(
     of: &Bonding,
 ) {
     let rule = bonds.rules.len();
-    bonds.rules = bonds.rules.iter().copied().chain([of.rule]).collect();
+    bonds.rules = bonds.rules.iter().chain([&of.rule]).cloned().collect();
     for &[a, b] in pairs {
         let apart = particles.poses[b as usize].place() - particles.poses[a as usize].place();
         let radii = [a, b].map(|end| particles.poses[end as usize].radius_m());
@@ -195,7 +204,7 @@ pub(crate) fn damp(state: &mut State, damping: BondDamping) {
     state.bonds.damping = (0..state.bonds.len()).map(of_bond).collect();
     let damped = |rule: &BondRule| BondRule {
         damped: true,
-        ..*rule
+        ..rule.clone()
     };
     state.bonds.rules = state.bonds.rules.iter().map(damped).collect();
     state.divide();

@@ -12,7 +12,7 @@ use dem_runner::pictures::View;
 use dem_runner::pictures::scale::Scale;
 use dem_scene::ColourBy;
 
-use crate::bars::{ELASTIC, body, spheres, steel};
+use crate::bars::{ELASTIC, body, eq_20, spheres, steel};
 
 const SPHERE_KG: f64 = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.008;
 
@@ -25,7 +25,7 @@ fn row() -> State {
         &steel(BondModel::EulerBernoulli, ELASTIC),
         1e-9,
     );
-    Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = Some(0.0);
+    Arc::make_mut(&mut state.bonds.rules)[0].strengthening = eq_20(0.0);
     for (motion, velocity) in state.particles.motions.iter_mut().zip([0.0, 4.0, 4.4, 2.4]) {
         motion.velocity_m_s = [velocity, 0.0, 0.0];
     }

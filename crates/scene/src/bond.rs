@@ -324,10 +324,7 @@ fn check_flat_joint(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
             "von_mises_strength",
             failure.von_mises_strength_pa.is_some(),
         ),
-        (
-            "rate_strengthening",
-            failure.rate_strengthening_from_1_s.is_some(),
-        ),
+        ("rate_strengthening", failure.rate_strengthening.is_some()),
         ("fracture_energy", failure.fracture_energy_j_m2.is_some()),
     ];
     let unknown = unknown.into_iter().find(|(_, is_given)| *is_given);

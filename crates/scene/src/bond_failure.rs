@@ -2,13 +2,15 @@
 
 use super::conflicts;
 use super::field::Field;
+use super::numbers::{number, quantity};
 use super::plain_table::plain_table;
-use super::schema::{Kind, Word};
-use super::table::Table;
+use super::schema::{Key, Kind, Unless, Word};
+use super::table::{Read, Table};
 use super::tree::Value;
 use dem_io::diagnostic::Result;
-use dem_io::units::{ANGLE, ENERGY_PER_AREA, RATE, STRESS};
+use dem_io::units::{ANGLE, ENERGY_PER_AREA, NUMBER, RATE, STRESS};
 use dem_physics::bond::failure::EquivalentStress;
+use dem_physics::bond::rate_strengthening::IncreaseCurve;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Bound::{Excluded, Included};
@@ -27,13 +29,21 @@ pub enum StrainRateMeasure {
 /// Value of `rate_strengthening = true`, 1/s: where the strength of [Platzer 2022, eqs. 20, 21]
 /// begins to rise.
 const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
-const SWITCH_OR_RATE: Kind = Kind::Either(&[Kind::Boolean, Kind::Quantity(&RATE)]);
+const SWITCH_RATE_OR_TABLE: Kind = Kind::Either(&[
+    Kind::Boolean,
+    Kind::Quantity(&RATE),
+    Kind::List(&Kind::Row(&[
+        Kind::Quantity(&RATE),
+        Kind::Quantity(&NUMBER),
+    ])),
+]);
+const WRITE_A_RATE: &str = "write true, or a strain rate such as \"4.64e-6 1/s\"";
 
 plain_table! {
     FAILURE = "Failure";
     /// Failure criteria of a bond; the first that is met breaks it. At least one strength is
     /// required.
-    #[derive(Debug, Clone, Copy, Default, PartialEq)]
+    #[derive(Debug, Clone, Default, PartialEq)]
     pub struct BondFailure {
         /// Largest tensile stress that the edge of the bond can bear.
         tensile_strength_pa: Option<f64> = quantity("tensile_strength", &STRESS).not_negative();
@@ -61,10 +71,17 @@ plain_table! {
         equivalent_stress: EquivalentStress =
             word::<EquivalentStress>("equivalent_stress", "forces-only");
         /// Strain rate above which all strengths except the compressive one rise with the rate
-        /// (Platzer 2022, eqs. 20 and 21); `true` means 4.64e-6 1/s.
-        rate_strengthening_from_1_s: Option<f64> = new("rate_strengthening", SWITCH_OR_RATE)
-            .positive()
-            .remedy("write true, or a strain rate such as \"4.64e-6 1/s\""), by rate_strengthening;
+        /// (Platzer 2022, eqs. 20 and 21); `true` means 4.64e-6 1/s. Or the factor on them over the
+        /// rate, `[[rate, factor], ...]`, linear in the logarithm of the rate between the rows, 1
+        /// below the first and constant above the last; rates rise, factors are 1 or more and do
+        /// not fall.
+        rate_strengthening: Option<IncreaseCurve> =
+            new("rate_strengthening", SWITCH_RATE_OR_TABLE)
+                .positive()
+                .remedy(WRITE_A_RATE), by rate_strengthening;
+        /// A bond keeps the largest factor of `rate_strengthening` that it has had, however slowly
+        /// it is strained later.
+        keeps_largest_factor: bool = flag("keeps_largest_factor", false);
         /// Energy per area that it takes to pull or shear a bond apart: beyond its strength the
         /// bond softens, by a damage that stays, until this is spent (cohesive zone). Without it a
         /// bond breaks at its strength.
@@ -121,7 +138,7 @@ fn check_strengths(field: &Field<'_>, table: &Table<'_>, failure: &BondFailure) 
         return Err(field.fault("has no strength to exceed", remedy));
     }
     let strengthens = table.get("rate_strengthening");
-    let strengthens = strengthens.filter(|_| failure.rate_strengthening_from_1_s.is_some());
+    let strengthens = strengthens.filter(|_| failure.rate_strengthening.is_some());
     if let (Some(field), true) = (strengthens, has_none) {
         let problem = "has no effect without tensile_strength, shear_strength, cohesion or von_mises_strength, which it raises; it does not raise compressive_strength";
         let remedy = "add tensile_strength = \"1 MPa\", or remove rate_strengthening";
@@ -151,17 +168,70 @@ fn check_fracture_energy(table: &Table<'_>, failure: &BondFailure) -> Result<()>
     Ok(())
 }
 
-/// The strain rate above which strengths rise, 1/s. None for `false`.
-fn rate_strengthening(table: &Table<'_>) -> Result<Option<f64>> {
+/// The factor on strengths over the strain rate. None for `false`.
+fn rate_strengthening(table: &Table<'_>) -> Result<Option<IncreaseCurve>> {
     let Some(field) = table.get("rate_strengthening") else {
         return Ok(None);
     };
     if let Value::Boolean(on) = field.node.value {
-        return Ok(on.then_some(RATE_STRENGTHENING_FROM));
+        let from_1_s = RATE_STRENGTHENING_FROM;
+        return Ok(on.then_some(IncreaseCurve::Platzer { from_1_s }));
     }
-    if field.is_word() {
-        let remedy = "write true, or a strain rate such as \"4.64e-6 1/s\"";
-        return Err(field.wrong("true, false or a rate", remedy));
+    if field.is_word() || matches!(field.node.value, Value::Table(_)) {
+        let remedy = "write true, a strain rate such as \"4.64e-6 1/s\", or a table such as [[\"1 1/s\", 1.6], [\"10 1/s\", 3.57]]";
+        return Err(field.wrong("true, false, a rate or a list of [rate, factor]", remedy));
     }
     table.read("rate_strengthening")
+}
+
+/// The rows `[rate, factor]` of a table.
+fn increase_table(field: &Field<'_>) -> Result<IncreaseCurve> {
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    for item in field.items()? {
+        let [rate, factor] = item.row("[rate, factor], such as [\"1 1/s\", 1.6]")?;
+        let row = [rate.positive(&RATE)?, factor.quantity(&NUMBER)?];
+        let [rate_before, factor_before] = rows.last().copied().unwrap_or([0.0, 1.0]);
+        if row[0] <= rate_before {
+            let limit = format!("more than the rate before it, {rate_before} 1/s");
+            return Err(rate.wrong(&limit, "put the rows in the order of their rates"));
+        }
+        if row[1] < 1.0 {
+            let remedy = "it is the strength at this rate over that of the scene, the static one";
+            return Err(factor.wrong("at least 1", remedy));
+        }
+        if row[1] < factor_before {
+            let limit = format!("at least the factor before it, {factor_before}");
+            let remedy = "a strength does not fall with the rate: write one factor in both rows";
+            return Err(factor.wrong(&limit, remedy));
+        }
+        rows.push(row);
+    }
+    Ok(IncreaseCurve::Table(rows))
+}
+
+impl Read for IncreaseCurve {
+    fn given(field: &Field<'_>, key: &Key) -> Result<Self> {
+        match field.node.value {
+            Value::List(_) => increase_table(field),
+            _ => Ok(Self::Platzer {
+                from_1_s: field.within_limits(key)?,
+            }),
+        }
+    }
+
+    fn unless_given(_: Unless) -> Option<Self> {
+        None
+    }
+
+    fn told(&self, key: &Key) -> String {
+        match self {
+            Self::Platzer { from_1_s } => quantity(*from_1_s, key.unit()),
+            Self::Table(rows) => {
+                let row = |[rate, factor]: &[f64; 2]| {
+                    format!("{}: {}", quantity(*rate, key.unit()), number(*factor))
+                };
+                rows.iter().map(row).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
 }

@@ -154,6 +154,8 @@ pub(super) static FAILURE: Conflicts = Conflicts { of: "bonds.*.failure", with: 
         "add von_mises_strength = \"0.185 MPa\", or remove equivalent_stress"),
     Conflict("", &["strain_rate_measure"], &["no rate_strengthening"],
         "{} has no effect without rate_strengthening", "add rate_strengthening = true, or remove strain_rate_measure"),
+    Conflict("", &["keeps_largest_factor = true"], &["no rate_strengthening"],
+        "{} has no effect without rate_strengthening", "add rate_strengthening = true, or remove keeps_largest_factor"),
     Conflict("", &["fracture_energy"], &["no tensile_strength", "no shear_strength", "no cohesion", "no von_mises_strength"],
         "{} has no effect without tensile_strength, shear_strength, cohesion or von_mises_strength, beyond which a bond softens",
         "add tensile_strength = \"1 MPa\", or remove fracture_energy"),

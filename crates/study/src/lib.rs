@@ -18,6 +18,7 @@ pub mod expand;
 pub mod failure_line;
 pub mod folder;
 pub(crate) mod front;
+pub mod increase_table;
 pub mod jobs;
 pub(crate) mod judge;
 pub mod masses;

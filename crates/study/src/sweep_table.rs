@@ -4,6 +4,7 @@ use dem_scene::study::Average;
 use serde::Serialize;
 
 use super::failure_line::FailureLine;
+use super::increase_table::IncreaseTable;
 use super::ranking::DesignTable;
 use super::response::Response;
 use super::row::Row;
@@ -50,6 +51,9 @@ pub struct SweepTable {
     /// Cohesion and friction angle. None: the study does not vary the pressure of a test.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure_line: Option<FailureLine>,
+    /// Tables for `rate_strengthening`. Empty: the study does not vary the velocity of a striker.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub increase_tables: Vec<IncreaseTable>,
     /// Notes on the results.
     pub notes: Vec<String>,
 }

@@ -9,6 +9,7 @@ use super::chance;
 use super::expand::Run;
 use super::failure_line::FailureLine;
 use super::front::{Point, front};
+use super::increase_table::IncreaseTable;
 use super::judge::{in_words, judge};
 use super::median::median;
 use super::order::orders;
@@ -60,6 +61,8 @@ impl SweepTable {
         notes.extend(of_design.unwrap_or_default());
         let failure_line = FailureLine::of(study, &rows);
         notes.extend(failure_line.as_ref().map(FailureLine::note));
+        let increase_tables = IncreaseTable::all_of(study, &rows);
+        notes.extend(increase_tables.iter().map(IncreaseTable::note));
         Self {
             study: study.source.clone(),
             scene: study.scene.display().to_string(),
@@ -83,6 +86,7 @@ impl SweepTable {
             find,
             design,
             failure_line,
+            increase_tables,
             notes,
         }
     }

@@ -6,6 +6,7 @@ mod expansion;
 mod failure_line;
 mod fastest;
 mod front;
+mod increase_table;
 mod made;
 mod morris;
 mod orders;

@@ -547,7 +547,7 @@ fn bonds_as_total(state: &mut State, poses: &[Pose]) {
             law => law,
         },
         criteria: None,
-        ..*rule
+        ..rule.clone()
     };
     let as_total = state.bonds.rules.iter().map(as_total).collect();
     let rules = std::mem::replace(&mut state.bonds.rules, as_total);

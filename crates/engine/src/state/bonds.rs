@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use dem_physics::bond::damping::DampingCoefficients;
 use dem_physics::bond::damping_models::StructuralDamping;
 use dem_physics::bond::stiffness::Stiffness;
-use dem_physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
+use dem_physics::bond::strain_rate::elongation_rate;
 use dem_physics::bond::tangent::{BondTangent, bond_tangent};
 use dem_physics::bond::total::{BondForces, End};
 use dem_physics::bond::{BondLoad, incremental, total};
@@ -434,7 +434,7 @@ impl Bonds {
     /// Whether the strength of any bond depends on its strain rate.
     pub fn strengthen_with_rate(&self) -> bool {
         let mut rules = self.rules.iter();
-        rules.any(|rule| rule.strengthening_from_1_s.is_some())
+        rules.any(|rule| rule.strengthening.is_some())
     }
 
     /// Strain rate of bond `at` by the measure of its rule, 1/s. Lengths: particles.
@@ -453,11 +453,18 @@ impl Bonds {
         }
     }
 
+    /// The rate that determines the strength of bond `at` at this strain rate, 1/s: the same, or
+    /// the largest so far.
+    pub fn deciding_rate_1_s(&self, at: usize, rate_1_s: f64) -> f64 {
+        let kept = self.histories.largest_rates.get(at);
+        kept.map_or(rate_1_s, |kept| kept.0.max(rate_1_s))
+    }
+
     /// Ratio of dynamic to static strength of bond `at` at this strain rate: 1 without rate
     /// strengthening.
     pub fn dynamic_increase_factor(&self, at: usize, rate_1_s: f64) -> f64 {
-        let from = self.rules[self.rule_of(at)].strengthening_from_1_s;
-        from.map_or(1.0, |from_1_s| dynamic_increase_factor(rate_1_s, from_1_s))
+        let strengthening = self.rules[self.rule_of(at)].strengthening.as_ref();
+        strengthening.map_or(1.0, |it| it.factor(self.deciding_rate_1_s(at, rate_1_s)))
     }
 
     /// Whether bond `at` is broken.

@@ -64,6 +64,8 @@ pub struct Break {
     pub cause: Cause,
     /// Elastic energy that it stored, J.
     pub released_j: f64,
+    /// The strain rate that determined its strength, 1/s, and the factor on it. None: no rate does.
+    pub strengthened: Option<[f64; 2]>,
     /// Its two particles, and the force, N, and torque, N m, on each: x, y, z of both. They acted
     /// until the break.
     pub ends: [(u32, [f64; 6]); 2],

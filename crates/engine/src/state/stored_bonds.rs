@@ -38,7 +38,7 @@ fn stored_bond(
     is_reversed: bool,
 ) -> StoredBond {
     StoredBond {
-        law: bonds.rules[bonds.rule_of(at)].law,
+        rule: bonds.rules[bonds.rule_of(at)].clone(),
         direction: bonds.direction(at),
         radius_m: bonds.radius_m(at),
         levers_m: bonds.levers_m(at),

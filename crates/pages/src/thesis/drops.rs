@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use dem_run::physics::bond::strain_rate::{PLATZER_LOWEST_RATE_1_S, fast_branch};
 use dem_run::plan;
 use dem_run::state::clusters::fragments;
 use dem_run::step::{advance, interact};
@@ -52,11 +53,66 @@ pub(crate) struct Row {
     pub(crate) packings: u32,
     pub(crate) reading: &'static str,
     pub(crate) damping: &'static str,
-    /// With the dynamic increase factor.
-    pub(crate) dif: bool,
+    pub(crate) dif: Dif,
 }
 
-/// Drops with the first reading and the factor.
+/// How the dynamic increase factor is applied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Dif {
+    No,
+    /// That of the present strain rate.
+    Present,
+    /// The largest that a bond has had.
+    Largest,
+    /// The same, with the curve of eq. 20 going on above 50/s.
+    LargestWithoutEnd,
+}
+
+impl Dif {
+    /// As the page calls it.
+    pub(crate) fn title(self) -> &'static str {
+        match self {
+            Self::No => "no",
+            Self::Present => "yes",
+            Self::Largest => "largest so far",
+            Self::LargestWithoutEnd => "largest so far, also above 50/s",
+        }
+    }
+
+    /// As files call it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::No => "static",
+            Self::Present => "dif",
+            Self::Largest => "largest",
+            Self::LargestWithoutEnd => "largest-without-end",
+        }
+    }
+
+    /// Settings of the failure of bonds.
+    fn sets(self) -> Vec<String> {
+        let keeps = || "keeps_largest_factor=true".to_owned();
+        match self {
+            Self::No => vec!["rate_strengthening=false".to_owned()],
+            Self::Present => Vec::new(),
+            Self::Largest => vec![keeps()],
+            Self::LargestWithoutEnd => vec![keeps(), format!("rate_strengthening={}", endless())],
+        }
+    }
+}
+
+/// The second branch of eq. 20 from 1.1/s up to 1000/s as a table; between its rows, a tenth of a
+/// decade apart, it is up to 0.002 above the parabola.
+fn endless() -> String {
+    let first = [PLATZER_LOWEST_RATE_1_S.log10()];
+    let lgs = first
+        .into_iter()
+        .chain((1..=30).map(|tenth| 0.1 * f64::from(tenth)));
+    let rows = lgs.map(|lg| format!("[{:e},{}]", 10.0_f64.powf(lg), fast_branch(lg)));
+    format!("[{}]", rows.collect::<Vec<_>>().join(","))
+}
+
+/// Drops with the first reading and the present factor.
 pub(crate) const fn row(sample: Sample, damping: &'static str) -> Row {
     Row {
         sample,
@@ -66,7 +122,7 @@ pub(crate) const fn row(sample: Sample, damping: &'static str) -> Row {
         },
         reading: READINGS[0],
         damping,
-        dif: true,
+        dif: Dif::Present,
     }
 }
 
@@ -79,16 +135,27 @@ pub(crate) fn rows() -> Vec<Row> {
     };
     let mut rows = DAMPING.map(coarse).concat();
     rows.extend(coarse(DAMPING[0]).map(|row| Row {
-        dif: false,
+        dif: Dif::No,
         packings: 1,
         ..row
     }));
     for reading in [READINGS[0], READINGS[1]] {
-        rows.extend([true, false].map(|dif| Row {
+        rows.extend([Dif::Present, Dif::No].map(|dif| Row {
             reading,
             dif,
             ..row(BARE, DAMPING[0])
         }));
+    }
+    for dif in [Dif::Largest, Dif::LargestWithoutEnd] {
+        let kept = |row| Row { dif, ..row };
+        let coarse = row(COARSE, DAMPING[0]);
+        rows.extend(
+            READINGS[..2]
+                .iter()
+                .map(|reading| kept(Row { reading, ..coarse })),
+        );
+        rows.push(kept(row(COARSE, DAMPING[1])));
+        rows.push(kept(row(BARE, DAMPING[0])));
     }
     rows
 }
@@ -101,7 +168,7 @@ impl Row {
     }
 
     pub(crate) fn name(&self, fall: &str, seed: u32) -> String {
-        let dif = if self.dif { "dif" } else { "static" };
+        let dif = self.dif.name();
         let (table, texture) = (self.sample.table.number(), self.sample.texture());
         let [reading, damping] = [self.reading, self.damping];
         format!("drop-{table}-{texture}-{reading}-{damping}-{dif}-{fall}-{seed}")
@@ -118,9 +185,8 @@ impl Row {
             "bonds.cake.damping={{damping_ratio={}}}",
             self.damping
         ));
-        if !self.dif {
-            sets.push("bonds.cake.failure.rate_strengthening=false".to_owned());
-        }
+        let of_failure = self.dif.sets().into_iter();
+        sets.extend(of_failure.map(|set| format!("bonds.cake.failure.{set}")));
         sets.extend(fall.sets());
         sets
     }

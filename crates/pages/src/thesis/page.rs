@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::bending::{self, READINGS};
-use super::drops::{self, FALLS};
+use super::drops::{self, Dif, FALLS};
 use super::plots;
 use super::rebound;
 use super::samples::{self, PACKINGS, Table as Spheres};
@@ -66,6 +66,7 @@ fn keep_earlier(table: &mut Table, earlier: &[Vec<String>]) {
 /// Number of cells at the beginning of a row that name it.
 fn names(table: &Table) -> usize {
     match table.words {
+        DROPS if table.head.contains(&"fall") => 5,
         DROPS | "thesis strengthening" => 4,
         BENDING if table.head[1] == "reading of eq. 13" => 2,
         _ => 1,
@@ -263,7 +264,7 @@ fn drops(results: &Path) -> Table {
     ];
     for row in drops::rows() {
         let mut cells = row.title();
-        cells.push(if row.dif { "yes" } else { "no" }.to_owned());
+        cells.push(row.dif.title().to_owned());
         for fall in FALLS {
             let runs = fallen(results, &row, fall.0);
             cells.push(match runs.len() {
@@ -286,9 +287,9 @@ const DROPS_HEAD: &str = "table | reading of eq. 13 | damping ratio | DIF | 15 d
 /// Largest utilisation of each bond during the drop, of the first packing, with the factor.
 fn utilisation(results: &Path) -> Table {
     let mut rows = vec![cells(
-        "Platzer 2022, figs. 55 and 56 |  | 0.6 | 25-flat |  |  | at most 71 | mostly below 50",
+        "Platzer 2022, figs. 55 and 56 |  | 0.6 | yes | 25-flat |  |  | at most 71 | mostly below 50",
     )];
-    for row in drops::rows().iter().filter(|row| row.dif) {
+    for row in drops::rows().iter().filter(|row| row.dif != Dif::No) {
         for fall in FALLS {
             let run = fallen(results, row, fall.0).first().cloned();
             let run = run.unwrap_or_default();
@@ -297,6 +298,7 @@ fn utilisation(results: &Path) -> Table {
             };
             let mut cells = row.title();
             cells.extend([
+                row.dif.title().to_owned(),
                 fall.0.to_owned(),
                 percent("median", 0),
                 percent("exceeded_by_1_in_100", 0),
@@ -306,7 +308,7 @@ fn utilisation(results: &Path) -> Table {
             rows.push(cells);
         }
     }
-    let head = "table | reading of eq. 13 | damping ratio | fall | median, % | \
+    let head = "table | reading of eq. 13 | damping ratio | DIF | fall | median, % | \
         exceeded by 1 % of bonds, % | by 0.1 %, % | bonds above 50 %, %";
     table(DROPS, head, rows)
 }

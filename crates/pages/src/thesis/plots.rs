@@ -4,7 +4,7 @@ use dem_plots::{Line, Plot};
 use std::path::Path;
 
 use super::bending::{self, READINGS};
-use super::drops;
+use super::drops::{self, Dif};
 use super::map::{self, View};
 use super::oscillation;
 use crate::bench::{finished, number, read};
@@ -14,8 +14,22 @@ pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
     let plots = [
         ("thesis-bending.svg", curves(results)),
         ("thesis-oscillation.svg", oscillations()),
-        ("thesis-25-flat.svg", utilisation(results, "25-flat")),
-        ("thesis-25-upright.svg", utilisation(results, "25-upright")),
+        (
+            "thesis-25-flat.svg",
+            utilisation(results, "25-flat", Dif::Present),
+        ),
+        (
+            "thesis-25-upright.svg",
+            utilisation(results, "25-upright", Dif::Present),
+        ),
+        (
+            "thesis-25-flat-kept.svg",
+            utilisation(results, "25-flat", Dif::LargestWithoutEnd),
+        ),
+        (
+            "thesis-25-upright-kept.svg",
+            utilisation(results, "25-upright", Dif::LargestWithoutEnd),
+        ),
     ];
     let there = plots.into_iter();
     there.filter_map(|(name, svg)| Some((name, svg?))).collect()
@@ -63,11 +77,11 @@ fn oscillations() -> Option<String> {
     )
 }
 
-/// Utilisation and factor in the first drop of this kind that has been run with the factor, the
-/// fine sample first.
-fn utilisation(results: &Path, fall: &str) -> Option<String> {
+/// Utilisation and factor in the first drop of this kind that has been run with the factor so
+/// applied, the fine sample first.
+fn utilisation(results: &Path, fall: &str, dif: Dif) -> Option<String> {
     let mut rows = drops::rows();
-    rows.retain(|row| row.dif);
+    rows.retain(|row| row.dif == dif);
     rows.sort_by_key(|row| row.sample.table.number());
     let (row, run) = rows.iter().find_map(|row| {
         let run = read(&results.join(format!("{}.json", row.name(fall, 1))))?;

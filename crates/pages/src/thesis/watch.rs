@@ -3,7 +3,6 @@
 use dem_run::State;
 use dem_run::measure::load;
 use dem_run::physics::bond::failure::{Factors, stresses, utilisation};
-use dem_run::physics::bond::strain_rate::dynamic_increase_factor;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
@@ -106,10 +105,7 @@ fn of_bond(state: &State, at: usize) -> [f64; 2] {
     let (Some(criteria), false) = (&rule.criteria, bonds.is_broken(at)) else {
         return [0.0, 1.0];
     };
-    let from = rule.strengthening_from_1_s;
-    let factor = from.map_or(1.0, |from| {
-        dynamic_increase_factor(rate_1_s(state, at), from)
-    });
+    let factor = bonds.dynamic_increase_factor(at, rate_1_s(state, at));
     let factors = Factors {
         scatter: 1.0,
         rate: factor,

@@ -15,7 +15,7 @@ const LOWEST_1_S: f64 = 4.64e-6;
 /// Above this rate the factor no longer rises, /s.
 pub const HIGHEST_1_S: f64 = 50.0;
 /// Start of the second branch, /s.
-const BRANCH_1_S: f64 = 0.1;
+pub(super) const BRANCH_1_S: f64 = 0.1;
 
 /// The rate below which Platzer 2022, section 4.5.1.8, applies no strengthening, so that the small
 /// oscillations of a quasi-static test have no effect, /s.

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 
 use dem_results::columns::header;
-use dem_results::{Event, SeriesFile, Table, event_lines, read_series};
+use dem_results::{Event, SeriesFile, Table, event_lines, read_series, read_strengthened};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
@@ -24,6 +24,7 @@ fn event(step: u64) -> Event<'static> {
         cause: "tension",
         energy_j: Some(0.1),
         detail: "",
+        strengthened: None,
     }
 }
 
@@ -88,13 +89,22 @@ fn events_look_as_documented() {
         cause: "",
         energy_j: None,
         detail: "search begins,\nbodies are near",
+        strengthened: None,
+    };
+    let fast = Event {
+        detail: "a, b",
+        strengthened: Some([10.0, 3.5675]),
+        ..event(3)
     };
     events.append(&event_lines([])).unwrap();
-    events.append(&event_lines([event(2), planned])).unwrap();
-    let text = "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail\n\
-                2,2e-6,bond_broken,3,1,2,0.5,-0.001,0,tension,0.1,\n\
-                12,0.25,plan,,,,,,,,,\"search begins, bodies are near\"\n";
+    let rows = [event(2), planned, fast];
+    events.append(&event_lines(rows)).unwrap();
+    let text = "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail,strain_rate_1_s,dynamic_increase_factor\n\
+                2,2e-6,bond_broken,3,1,2,0.5,-0.001,0,tension,0.1,,,\n\
+                12,0.25,plan,,,,,,,,,\"search begins, bodies are near\",,\n\
+                3,3e-6,bond_broken,3,1,2,0.5,-0.001,0,tension,0.1,\"a, b\",10,3.5675\n";
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    assert_eq!(read_strengthened(&path).unwrap(), [[10.0, 3.5675]]);
     assert_eq!(events.length_bytes(), text.len() as u64);
     events.sync().unwrap();
 }

@@ -8,10 +8,19 @@ use dem_results::{ResultsFolder, Series, read_series};
 use dem_scene::Statistic;
 
 use super::fragments::{COUNT, DISCHARGE, SIZES};
+use super::strengthening::STRENGTHENING;
 use dem_plan::measure::Probe;
 
 /// Names of plots that any run may have, which no measure may overwrite.
-const OVERALL: [&str; 6] = [ENERGY, ERRORS, BROKEN, COUNT, SIZES, DISCHARGE];
+const OVERALL: [&str; 7] = [
+    ENERGY,
+    ERRORS,
+    BROKEN,
+    COUNT,
+    SIZES,
+    DISCHARGE,
+    STRENGTHENING,
+];
 const ENERGY: &str = "energy";
 const ERRORS: &str = "errors";
 const BROKEN: &str = "broken_bonds";

@@ -12,6 +12,7 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, bond_of_file};
 use dem_engine::state::clusters::{Cluster, Split};
 use dem_engine::state::events::{BrokenInto, PopulationEvent, STARTS_BONDED};
+use dem_physics::bond::failure::Cause;
 
 /// Largest number of fragments named in the text of a split.
 const NAMED: usize = 8;
@@ -73,6 +74,8 @@ fn write_breaks(state: &State, bodies: &[PlacedBody], table: &mut Table) -> Resu
             cause: broken.cause.name(),
             energy_j: Some(broken.released_j),
             detail: found.map_or("", |(body, _)| &body.name),
+            // The rate raises no compressive strength.
+            strengthened: (broken.strengthened).filter(|_| broken.cause != Cause::Compression),
         };
         table.append(&event_lines([event]))?;
     }
@@ -277,5 +280,6 @@ fn of_all<'a>(state: &State, kind: &'a str, cause: &'a str, detail: &'a str) -> 
         cause,
         energy_j: None,
         detail,
+        strengthened: None,
     }
 }

@@ -12,7 +12,7 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments::fragment_masses_kg;
 use dem_engine::state::events::REMOVED;
-use dem_physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
+use dem_physics::bond::rate_strengthening::IncreaseCurve;
 use dem_plan::measure::{DynamicUtilisation, dynamic_utilisations};
 
 /// A scale of colours, the same in all pictures of a run.
@@ -46,9 +46,12 @@ impl Scale {
                 let heaviest_kg = present.chain(to_come).fold(0.0, f64::max);
                 (Quantity::FragmentMass, [0.0, heaviest_kg])
             }
-            ColourBy::StrainRate => (Quantity::StrainRate, [0.0, HIGHEST_1_S]),
+            ColourBy::StrainRate => {
+                let highest = largest_of_curves(state, IncreaseCurve::highest_rate_1_s);
+                (Quantity::StrainRate, [0.0, highest])
+            }
             ColourBy::DynamicIncreaseFactor => {
-                let highest = dynamic_increase_factor(HIGHEST_1_S, 0.0);
+                let highest = largest_of_curves(state, |curve| curve.factor(f64::INFINITY));
                 (Quantity::IncreaseFactor, [1.0, highest])
             }
             ColourBy::DynamicUtilisation => (Quantity::Utilisation, [0.0, 1.0]),
@@ -105,6 +108,15 @@ impl Scale {
         let [low, high] = self.ends.map(|end| significant(end, 3));
         colour_bar(image, name, [&low, &format!("{high}{unit}")], &viridis);
     }
+}
+
+/// The largest number of the curves by which strengths rise with the strain rate; that of eq. 20 if
+/// there are none.
+fn largest_of_curves(state: &State, number: impl Fn(&IncreaseCurve) -> f64) -> f64 {
+    let rules = state.bonds.rules.iter();
+    let curves = rules.filter_map(|rule| Some(&rule.strengthening.as_ref()?.curve));
+    let largest = curves.map(&number).reduce(f64::max);
+    largest.unwrap_or_else(|| number(&IncreaseCurve::Platzer { from_1_s: 0.0 }))
 }
 
 /// Mass of the fragment of each particle, kg; where nothing can break, of its body. Length:

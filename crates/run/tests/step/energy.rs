@@ -17,10 +17,10 @@ const INCREMENTAL: BondRule = BondRule {
 };
 
 /// The tumbling bar at a step of the limit over this number.
-fn tumbling(rule: BondRule, limit_over_step: u32) -> State {
+fn tumbling(rule: &BondRule, limit_over_step: u32) -> State {
     let mut state = bar(
         BondModel::Timoshenko,
-        rule,
+        rule.clone(),
         BAR_LIMIT_S / f64::from(limit_over_step),
     );
     tumble(&mut state);
@@ -32,7 +32,7 @@ fn energy_error_falls_with_the_square_of_the_step() {
     with_threads(1, || {
         for rule in [ELASTIC, INCREMENTAL] {
             let errors: Vec<f64> = [5, 10, 20, 40]
-                .map(|finer| run(&mut tumbling(rule, finer), 1000 * u64::from(finer), 1).energy)
+                .map(|finer| run(&mut tumbling(&rule, finer), 1000 * u64::from(finer), 1).energy)
                 .into();
             let orders = orders(&errors);
             eprintln!("{:?}: {errors:?} {orders:.4?}", rule.law);
@@ -58,7 +58,7 @@ fn distances(ends: &[Vector3<f64>]) -> Vec<f64> {
 fn places_are_of_second_order() {
     with_threads(1, || {
         for rule in [ELASTIC, INCREMENTAL] {
-            let ends = [10, 20, 40, 80].map(|finer| end(tumbling(rule, finer), finer));
+            let ends = [10, 20, 40, 80].map(|finer| end(tumbling(&rule, finer), finer));
             let orders = orders(&distances(&ends));
             eprintln!("{:?}: {orders:.4?}", rule.law);
             assert!(orders.iter().all(|o| (o - 2.0).abs() < 0.1), "{orders:?}");
@@ -74,7 +74,7 @@ fn a_step_that_changes_in_mid_run_keeps_the_order() {
         for rule in [ELASTIC, INCREMENTAL] {
             let runs = [12, 24, 48, 96].map(|finer| {
                 let step_s = BAR_LIMIT_S / f64::from(finer);
-                let mut state = tumbling(rule, finer);
+                let mut state = tumbling(&rule, finer);
                 let third = 100 * u64::from(finer);
                 let mut energy = 0.0_f64;
                 for (fraction, steps) in [(1.0, third), (4.0 / 3.0, third), (2.0 / 3.0, third)] {
@@ -103,7 +103,7 @@ fn a_step_that_changes_in_mid_run_keeps_the_order() {
 #[test]
 fn a_million_steps_of_tumbling_lose_nothing() {
     with_threads(1, || {
-        let mut state = tumbling(ELASTIC, 10);
+        let mut state = tumbling(&ELASTIC, 10);
         let early = run(&mut state, 100_000, 50);
         let all = run(&mut state, 900_000, 50);
         eprintln!("{early:?}\n{all:?}");
@@ -125,7 +125,7 @@ fn a_million_steps_of_tumbling_lose_nothing() {
 #[test]
 fn the_incremental_formulation_keeps_its_energy_too() {
     with_threads(1, || {
-        let all = run(&mut tumbling(INCREMENTAL, 10), 200_000, 50);
+        let all = run(&mut tumbling(&INCREMENTAL, 10), 200_000, 50);
         eprintln!("{all:?}");
         assert!(all.energy <= 2e-7, "{all:?}");
         assert!(
@@ -162,7 +162,7 @@ fn what_rests_does_not_move_by_a_single_bit() {
                     assert_eq!(state.particles.poses, particles.poses, "{model:?}");
                     assert_eq!(state.particles.motions, particles.motions, "{model:?}");
                 };
-                still(&spheres, &chain, &steel(model, rule), 100_000);
+                still(&spheres, &chain, &steel(model, rule.clone()), 100_000);
                 // Nothing has changed after a step, so nothing ever will.
                 let (spheres, pairs) = random_spheres();
                 still(&spheres, &pairs, &soft(model, rule), 100);

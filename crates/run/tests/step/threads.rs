@@ -1,7 +1,7 @@
 //! The same bits for any number of partitions and threads, with all features active.
 
 use crate::bars::{
-    BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, with_threads,
+    BondDamping, add_bonds, damp, damp_particles, eq_20, random_spheres, reopen, soft, with_threads,
 };
 use crate::helpers::step_and_balance;
 use dem_engine::Balance;
@@ -16,6 +16,7 @@ use dem_engine::state::supports::GroupSupport;
 use dem_engine::state::supports::HeldParticle;
 use dem_physics::bond::damage::Damage;
 use dem_physics::bond::failure::{Criteria, EquivalentStress};
+use dem_physics::bond::rate_strengthening::{IncreaseCurve, RateStrengthening};
 use dem_physics::bond::stiffness::BondModel;
 use dem_scene::{Factor, Hold};
 
@@ -32,12 +33,13 @@ const BREAKING: BondRule = BondRule {
         von_mises_strength_pa: 0.12e6,
         equivalent_stress: EquivalentStress::AxialInTension,
     }),
-    strengthening_from_1_s: Some(1.1),
+    strengthening: eq_20(1.1),
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
     contact_beside: false,
 };
 
-/// Three random bodies side by side: incremental, total, incremental; all break.
+/// Three random bodies side by side: incremental, total, incremental; all break. The bonds of the
+/// last one keep their largest factor.
 fn scene(partitions: usize) -> State {
     let (mut particles, pairs) = random_spheres();
     let one = particles.clone();
@@ -62,6 +64,10 @@ fn scene(partitions: usize) -> State {
                     fracture_energy_j_m2: 5.0,
                 }
             },
+            strengthening: Some(RateStrengthening {
+                curve: IncreaseCurve::Platzer { from_1_s: 1.1 },
+                keeps_largest: body == 2,
+            }),
             ..BREAKING
         };
         add_bonds(

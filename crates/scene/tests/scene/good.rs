@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use dem_io::units::DIMENSIONS;
 use dem_physics::bond::failure::EquivalentStress;
 use dem_physics::bond::flat_joint::{FlatJointLaw, moment_ratio};
+use dem_physics::bond::rate_strengthening::IncreaseCurve;
 use dem_physics::bond::stiffness::BondModel;
 use dem_physics::contact::law::Rolling;
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
@@ -336,7 +337,8 @@ fn bonds() {
             friction_angle_rad: Some(35.0_f64.to_radians()),
             von_mises_strength_pa: Some(3e6),
             equivalent_stress: EquivalentStress::TensileEdge,
-            rate_strengthening_from_1_s: Some(1e-5),
+            rate_strengthening: Some(IncreaseCurve::Platzer { from_1_s: 1e-5 }),
+            keeps_largest_factor: true,
             strain_rate_measure: StrainRateMeasure::RelativeVelocity,
             fracture_energy_j_m2: Some(50.0),
             weibull_modulus: Some(7.0),
@@ -345,6 +347,10 @@ fn bonds() {
     let kappa = Some(3.0);
     assert_eq!(scene.bonds["pinned"].model, BondModel::Pin { kappa });
     assert_eq!(scene.bonds["pinned"].joint, None);
+    assert_eq!(
+        scene.bonds["pinned"].failure.rate_strengthening,
+        Some(IncreaseCurve::Table(vec![[1e-3, 1.0], [0.05, 1.25]]))
+    );
     let joint = FlatJointLaw {
         radial_elements: 2,
         circumferential_elements: 8,
@@ -363,7 +369,9 @@ fn bonds() {
     assert_eq!(sheared.formulation, Formulation::Total);
     assert_eq!(sheared.radius_factor, None);
     assert_eq!(sheared.damping, BondDamping::default());
-    assert_eq!(sheared.failure.rate_strengthening_from_1_s, Some(4.64e-6));
+    let from = |from_1_s| Some(IncreaseCurve::Platzer { from_1_s });
+    assert_eq!(sheared.failure.rate_strengthening, from(4.64e-6));
+    assert!(!sheared.failure.keeps_largest_factor);
     assert_eq!(sheared.failure.compressive_strength_pa, None);
     assert_eq!(
         sheared.plasticity,

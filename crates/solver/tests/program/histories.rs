@@ -354,3 +354,65 @@ fn bonds_with_a_history_need_a_kind_that_has_one() {
     assert_eq!(done.status.code(), Some(2), "{said}");
     assert!(said.contains("write a .vtp"), "{said}");
 }
+
+/// A bond is pulled at 10/s up to twice its static strength and at 1/s from there on. It keeps the
+/// factor of 10/s, 3.5675 by eq. 20: through the end of a run that is taken further, and in a body
+/// that a second run pulls at 1/s alone.
+#[test]
+fn a_bond_keeps_its_largest_factor_in_checkpoints_and_files() {
+    const KEEPS: &str = "failure = { tensile_strength = 1e5, rate_strengthening = true, keeps_largest_factor = true }";
+    let bench = Bench::new();
+    let moved = "fixed = [\"y\", \"z\", \"rx\", \"ry\", \"rz\"], velocity = { x = 0.02 }, table = [[0, 1], [2e-4, 1], [2.01e-4, 0.1]]";
+    let run = "2 ms\", time_step = \"0.2 us";
+    let scene = pair(INLINE, KEEPS, moved).replace("20 ms", run);
+    let broke = || {
+        let (_, rows) = super::table(&bench.path("out/events.csv"));
+        let row = rows.iter().find(|row| row[2] == "bond_broken");
+        row.map(|row| [1, 12, 13].map(|at| row[at].parse::<f64>().unwrap()))
+    };
+    let assert_broke = |wanted_s: f64| {
+        let [time_s, rate_1_s, factor] = broke().unwrap();
+        assert!((time_s - wanted_s).abs() < 2e-6, "{time_s} {wanted_s}");
+        assert!((rate_1_s / 10.0 - 1.0).abs() < 1e-6, "{rate_1_s}");
+        assert!((factor / 3.5675 - 1.0).abs() < 1e-6, "{factor}");
+    };
+    ran(&bench, &scene, None);
+    // 2e-3 at 10/s, 5.5e-6 in the change of speed, the rest of 3.5675e-3 at 1/s.
+    assert_broke(2.01e-4 + 1.5675e-3 - 5.5e-6);
+    let whole = std::fs::read(bench.path("out/events.csv")).unwrap();
+    let plot = std::fs::read_to_string(bench.path("out/plots/rate_strengthening.svg")).unwrap();
+    assert!(plot.contains("1 broken") && plot.contains("10 1/s: 3.57"));
+
+    ran(&bench, &scene.replace("2 ms", "1 ms"), Some("left.vtp"));
+    assert_eq!(broke(), None);
+    let left = read_body(&bench.path("left.vtp")).unwrap();
+    let kept_1_s = left.history_of("history_largest_strain_rate_1_s", 0)[0];
+    assert!((kept_1_s / 10.0 - 1.0).abs() < 1e-6, "{kept_1_s}");
+    let further = [
+        "--output",
+        "out",
+        "--resume",
+        "--quiet",
+        "--set",
+        "run.end_time=2 ms",
+    ];
+    bench.good(&bench.path("pair.toml"), &further);
+    assert_eq!(std::fs::read(bench.path("out/events.csv")).unwrap(), whole);
+
+    // It was left at a strain of 2.8045e-3.
+    let slow = "fixed = [\"y\", \"z\", \"rx\", \"ry\", \"rz\"], velocity = { x = 0.002 }";
+    let again = pair("file = \"left.vtp\"", KEEPS, slow).replace("20 ms", run);
+    ran(&bench, &again, None);
+    assert_broke(3.5675e-3 - 2.8045e-3);
+    let forgets = again.replace(", keeps_largest_factor = true", "");
+    let said = bench.bad(
+        &bench.write("pair.toml", &forgets),
+        &["--output", "out", "--force"],
+        2,
+    );
+    assert!(
+        said.contains("bond 0: it keeps the largest factor of its strain rates")
+            && said.contains("give it keeps_largest_factor = true"),
+        "{said}"
+    );
+}

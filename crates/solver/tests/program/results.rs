@@ -46,7 +46,8 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
             "errors.svg",
             "fragment_sizes.svg",
             "fragments.svg",
-            "pull.svg"
+            "pull.svg",
+            "rate_strengthening.svg",
         ]
     );
     let index = fs::read_to_string(bench.path("out/frames.pvd")).unwrap();
@@ -64,7 +65,7 @@ fn events_tell_every_bond_that_broke() {
     let (columns, rows) = table(&bench.path("out/events.csv"));
     assert_eq!(
         columns.join(","),
-        "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail"
+        "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail,strain_rate_1_s,dynamic_increase_factor"
     );
     let rows: Vec<_> = rows
         .into_iter()
@@ -176,7 +177,7 @@ fn measures_named_like_other_columns_and_plots_stand_beside_them() {
     ] {
         assert!(plots.contains(&name.to_owned()), "{name} in {plots:?}");
     }
-    assert_eq!(plots.len(), 3 + 37 + 2);
+    assert_eq!(plots.len(), 4 + 37 + 2);
     for name in plots {
         let text = fs::read_to_string(bench.path("out/plots").join(&name)).unwrap();
         assert!(text.starts_with("<!-- dem-run plot -->\n<svg "), "{name}");

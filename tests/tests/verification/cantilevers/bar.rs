@@ -113,7 +113,7 @@ impl Bar {
                 damped: false,
                 structural_damping: 0.0,
                 criteria: None,
-                strengthening_from_1_s: None,
+                strengthening: None,
                 strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
                 contact_beside: false,
             }]),

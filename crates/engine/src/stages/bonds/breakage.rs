@@ -3,14 +3,17 @@
 
 use super::damage::{Loss, growth_of, is_crushed, softened};
 use super::forces::{any_bond, bonds_to_come};
+use crate::stages::chunks::CHUNK;
 use crate::stages::stage::{Need, Saving, Stage};
 use crate::state::State;
-use crate::state::bonds::Bonds;
+use crate::state::bonds::{BondRule, Bonds};
 use crate::state::events::{Break, Events};
 use crate::state::particles::Particles;
 use crate::state::partitions::Partition;
 use crate::state::partitions::{Idle, STALE, divide_anew};
 use dem_physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
+use dem_physics::bond::rate_strengthening::LargestRate;
+use rayon::prelude::*;
 
 /// ns per bond of a body of 25,547 particles: see doc/inside/leave-out.md.
 const FAILURE_NS: f64 = 2.1;
@@ -31,10 +34,15 @@ pub const FAILURE: Stage = Stage {
 /// Strengths that depend on the strain rate.
 pub const RATES: Stage = Stage {
     within: Some(FAILURE.name),
+    bytes: |state| size_of_val(&state.bonds.histories.largest_rates[..]),
     ..Stage::new("rate strengthening", |state, _| {
+        let why = match any_bond(state, BondRule::keeps_largest_factor) {
+            true => "bonds keep the largest factor",
+            false => "only for bonds that would break without it",
+        };
         Need::of(
             state.bonds.strengthen_with_rate(),
-            || "only for bonds that would break without it".to_owned(),
+            || why.to_owned(),
             "no rate strengthening asked for",
         )
     })
@@ -89,6 +97,7 @@ pub const FRICTION: Stage = Stage {
 /// Breaks the bonds that have reached their strength. Returns the number of bonds compared with
 /// their strength.
 pub(crate) fn break_failed_bonds(state: &mut State) -> usize {
+    keep_largest_rates(&mut state.bonds, &state.particles);
     let compared = state
         .scratch
         .partitions
@@ -115,9 +124,34 @@ pub(crate) fn break_failed_bonds(state: &mut State) -> usize {
     compared
 }
 
-/// Number of bonds checked whose strength depends on the strain rate.
+/// Raises the largest strain rates of bonds that keep them to the present ones.
+fn keep_largest_rates(bonds: &mut Bonds, particles: &Particles) {
+    if bonds.histories.largest_rates.is_empty() {
+        return;
+    }
+    let mut all = std::mem::take(&mut bonds.histories.largest_rates);
+    let raise = |(chunk, rates): (usize, &mut [LargestRate])| {
+        let first = chunk * CHUNK;
+        let keepers = bonds
+            .runs(first..first + rates.len())
+            .filter(|(rule, _)| bonds.rules[*rule].keeps_largest_factor());
+        for at in keepers.flat_map(|(_, run)| run) {
+            if !bonds.is_broken(at) && !particles.sleeps(bonds.ends[at][0] as usize) {
+                let rate_1_s = bonds.strain_rate_1_s(at, &particles.poses, &particles.motions);
+                let kept = &mut rates[at - first].0;
+                *kept = kept.max(rate_1_s);
+            }
+        }
+    };
+    all.par_chunks_mut(CHUNK).enumerate().for_each(raise);
+    bonds.histories.largest_rates = all;
+}
+
+/// Number of bonds checked whose strength depends on the strain rate, or of all if some keep their
+/// largest factor.
 pub(crate) fn count_rates(state: &mut State) -> usize {
-    state.scratch.events.work.rates
+    let kept = state.bonds.histories.largest_rates.len();
+    kept.max(state.scratch.events.work.rates)
 }
 
 /// Number of bonds compared with an individual strength.
@@ -177,18 +211,18 @@ pub(crate) fn break_bonds(
 ) -> f64 {
     let by_rate = |at: &&u32| {
         let rule = &bonds.rules[bonds.rule_of(**at as usize)];
-        rule.strengthening_from_1_s.is_some()
+        rule.strengthening.is_some()
     };
     events.work.rates = failing.iter().filter(by_rate).count();
     // All are checked before the first is removed: a break changes the velocities of its ends, and
     // strain rates depend on velocities.
-    let losses: Vec<(usize, Loss)> = failing
+    let losses: Vec<(usize, Option<[f64; 2]>, Loss)> = failing
         .iter()
-        .map(|&at| at as usize)
-        .filter_map(|at| Some((at, loss(bonds, at, particles, drift_s)?)))
+        .map(|&at| (at as usize, strengthened(bonds, at as usize, particles)))
+        .filter_map(|(at, by)| Some((at, by, loss(bonds, at, particles, drift_s, by)?)))
         .collect();
     let mut spent_j = 0.0;
-    for (at, loss) in losses {
+    for (at, strengthened, loss) in losses {
         let kick_s = if loss.released_j > 0.0 {
             0.5 * drift_s
         } else {
@@ -207,23 +241,36 @@ pub(crate) fn break_bonds(
             place_m: (0.5 * (a + b)).into(),
             cause,
             released_j: loss.released_j,
+            strengthened,
             ends,
         });
     }
     spent_j
 }
 
-/// What a bond loses in the kick after a drift of `drift_s`. None: it has not reached its strength.
-fn loss(bonds: &Bonds, at: usize, particles: &Particles, drift_s: f64) -> Option<Loss> {
+/// The strain rate that determines the strength of a bond, 1/s, and the factor on it. None: its
+/// strength does not depend on the rate.
+fn strengthened(bonds: &Bonds, at: usize, particles: &Particles) -> Option<[f64; 2]> {
+    bonds.rules[bonds.rule_of(at)].strengthening.as_ref()?;
+    let rate_1_s = bonds.strain_rate_1_s(at, &particles.poses, &particles.motions);
+    let factor = bonds.dynamic_increase_factor(at, rate_1_s);
+    Some([bonds.deciding_rate_1_s(at, rate_1_s), factor])
+}
+
+/// What a bond so strengthened loses in the kick after a drift of `drift_s`. None: it has not
+/// reached its strength.
+fn loss(
+    bonds: &Bonds,
+    at: usize,
+    particles: &Particles,
+    drift_s: f64,
+    strengthened: Option<[f64; 2]>,
+) -> Option<Loss> {
     let rule = &bonds.rules[bonds.rule_of(at)];
     let criteria = rule.criteria?;
-    let rate = rule.strengthening_from_1_s.map_or(1.0, |_| {
-        let rate_1_s = bonds.strain_rate_1_s(at, &particles.poses, &particles.motions);
-        bonds.dynamic_increase_factor(at, rate_1_s)
-    });
     let factors = Factors {
         scatter: bonds.undamaged_strength_factor(at),
-        rate,
+        rate: strengthened.map_or(1.0, |[_, factor]| factor),
     };
     let forces = bonds.forces(at, &particles.poses);
     let at_once = |cause: Cause| Loss {

@@ -1,5 +1,5 @@
-//! What bonds have been through: for each law with a history one column with an entry per bond,
-//! and the columns of numbers as which files of bodies and frames hold it.
+//! What bonds have been through: for each history one column with an entry per bond, and the
+//! columns of numbers as which files of bodies and frames hold it.
 
 use dem_io::body::BondColumn;
 use dem_io::body::histories::{
@@ -16,6 +16,7 @@ use dem_physics::bond::damage::Damage;
 use dem_physics::bond::flat_joint::{FlatJoint, elements, elements_from, first_edge};
 use dem_physics::bond::incremental::History;
 use dem_physics::bond::plasticity::PlasticDeformation;
+use dem_physics::bond::rate_strengthening::LargestRate;
 use dem_physics::bond::stiffness::Stiffness;
 use dem_physics::rigid::rotation_vector;
 use dem_physics::rotation::numbers;
@@ -29,13 +30,13 @@ pub(crate) struct NewBond<'a> {
     pub(super) stiffness: &'a Stiffness,
 }
 
-/// The history of a bond by one law. The default is that of a bond of another law.
+/// The history of a bond by its rule. The default is that of a bond whose rule has no such history.
 pub(crate) trait BondHistory: Clone + Default {
     /// Its columns in files, in their order; numbers that a file lacks are 0.
     const COLUMNS: &'static [FileColumn] = &[];
 
-    /// Whether bonds of this law have it.
-    fn is_of(law: &BondLaw) -> bool;
+    /// Whether bonds of this rule have it.
+    fn is_of(rule: &BondRule) -> bool;
 
     /// The history of a bond without load, which may follow another law.
     fn new(_bond: &NewBond<'_>) -> Self {
@@ -90,8 +91,8 @@ pub(crate) trait BondHistory: Clone + Default {
 impl BondHistory for History {
     const COLUMNS: &'static [FileColumn] = &[column(SUMMED_SHEAR, 3), column(SUMMED_MOMENT, 3)];
 
-    fn is_of(law: &BondLaw) -> bool {
-        *law == BondLaw::Incremental
+    fn is_of(rule: &BondRule) -> bool {
+        rule.law == BondLaw::Incremental
     }
 
     fn store(&self, bond: &StoredBond, to: &mut [Vec<f64>]) {
@@ -128,8 +129,8 @@ impl BondHistory for History {
 }
 
 impl BondHistory for Damage {
-    fn is_of(law: &BondLaw) -> bool {
-        law.fracture_energy_j_m2().is_some()
+    fn is_of(rule: &BondRule) -> bool {
+        rule.law.fracture_energy_j_m2().is_some()
     }
 
     fn new(bond: &NewBond<'_>) -> Self {
@@ -157,8 +158,8 @@ impl BondHistory for PlasticDeformation {
         column(PLASTIC_WORK, 1),
     ];
 
-    fn is_of(law: &BondLaw) -> bool {
-        law.plasticity().is_some()
+    fn is_of(rule: &BondRule) -> bool {
+        rule.law.plasticity().is_some()
     }
 
     fn store(&self, bond: &StoredBond, to: &mut [Vec<f64>]) {
@@ -201,6 +202,38 @@ impl BondHistory for PlasticDeformation {
     }
 }
 
+impl BondHistory for LargestRate {
+    const COLUMNS: &'static [FileColumn] = &[FileColumn {
+        is_optional: true,
+        ..column("history_largest_strain_rate_1_s", 1)
+    }];
+
+    fn is_of(rule: &BondRule) -> bool {
+        rule.keeps_largest_factor()
+    }
+
+    fn end(&mut self) {
+        *self = Self::default();
+    }
+
+    fn store(&self, _bond: &StoredBond, to: &mut [Vec<f64>]) {
+        to[0].push(self.0);
+    }
+
+    fn restore(&mut self, from: &[&[f64]], _bond: &mut StoredBond) -> Result<()> {
+        self.0 = number(from[0]);
+        Ok(())
+    }
+
+    fn foreign(_from: &[&[f64]]) -> [String; 2] {
+        [
+            "it keeps the largest factor of its strain rates, and its kind of bonds does not",
+            "give it keeps_largest_factor = true, or remove the array 'history_largest_strain_rate_1_s' from the file",
+        ]
+        .map(str::to_owned)
+    }
+}
+
 impl BondHistory for FlatJoint {
     const COLUMNS: &'static [FileColumn] = &[
         column(FIRST_EDGE, 3),
@@ -215,8 +248,8 @@ impl BondHistory for FlatJoint {
         },
     ];
 
-    fn is_of(law: &BondLaw) -> bool {
-        law.flat_joint().is_some()
+    fn is_of(rule: &BondRule) -> bool {
+        rule.law.flat_joint().is_some()
     }
 
     fn new(bond: &NewBond<'_>) -> Self {
@@ -237,7 +270,7 @@ impl BondHistory for FlatJoint {
     }
 
     fn store(&self, bond: &StoredBond, to: &mut [Vec<f64>]) {
-        let Some(law) = bond.law.flat_joint() else {
+        let Some(law) = bond.rule.law.flat_joint() else {
             return;
         };
         let own = &self.elements;
@@ -260,7 +293,7 @@ impl BondHistory for FlatJoint {
         let &[edge, failed, slips] = from else {
             return Ok(());
         };
-        let law = bond.law.flat_joint();
+        let law = bond.rule.law.flat_joint();
         let count = law.map_or(0, |law| law.count());
         // Bonds with more elements in the same file lengthen the list of each.
         let (failed, surplus) = failed.split_at(count.min(failed.len()));
@@ -303,7 +336,7 @@ impl BondHistory for FlatJoint {
     }
 
     fn set_direction(&mut self, bond: &StoredBond) {
-        if let Some(law) = bond.law.flat_joint() {
+        if let Some(law) = bond.rule.law.flat_joint() {
             // Those of the line of centres lie across another direction.
             self.elements = elements(&law, bond.radius_m, &bond.direction);
         }
@@ -324,7 +357,7 @@ fn other_elements(in_file: usize, count: usize) -> [String; 2] {
 macro_rules! columns {
     ($($(#[$doc:meta])* $column:ident: $history:ty,)+) => {
         /// Histories of bonds. A column has an entry for each bond, or none at all if no rule has
-        /// its law.
+        /// such a history.
         #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
         pub struct Histories {
             $($(#[$doc])* pub $column: Vec<$history>,)+
@@ -403,10 +436,12 @@ columns! {
     plastics: PlasticDeformation,
     /// Elements of flat joints, none for bonds of other laws.
     joints: FlatJoint,
+    /// Largest strain rates.
+    largest_rates: LargestRate,
 }
 
 fn push<H: BondHistory>(column: &mut Vec<H>, at: usize, rules: &[BondRule], bond: &NewBond<'_>) {
-    if !column.is_empty() || rules.iter().any(|rule| H::is_of(&rule.law)) {
+    if !column.is_empty() || rules.iter().any(H::is_of) {
         column.resize(at, H::default());
         column.push(H::new(bond));
     }
@@ -463,7 +498,7 @@ fn restore<H: BondHistory>(
     if from.is_empty() || H::is_none(&from) {
         return Ok(());
     }
-    match history.filter(|_| H::is_of(&bond.law)) {
+    match history.filter(|_| H::is_of(&bond.rule)) {
         Some(history) => history.restore(&from, bond),
         None => {
             let [problem, remedy] = H::foreign(&from);

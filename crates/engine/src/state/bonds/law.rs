@@ -3,6 +3,7 @@
 use dem_physics::bond::failure::Criteria;
 use dem_physics::bond::flat_joint::FlatJointLaw;
 use dem_physics::bond::plasticity::Plasticity;
+use dem_physics::bond::rate_strengthening::RateStrengthening;
 use dem_scene::StrainRateMeasure;
 use serde::Serialize;
 
@@ -61,7 +62,7 @@ impl BondLaw {
 }
 
 /// Properties that the bonds of a rule share.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BondRule {
     /// How loads follow from deformation.
     pub law: BondLaw,
@@ -71,8 +72,8 @@ pub struct BondRule {
     pub structural_damping: f64,
     /// Strengths. None: the bonds never break.
     pub criteria: Option<Criteria>,
-    /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
-    pub strengthening_from_1_s: Option<f64>,
+    /// How strengths rise with the strain rate. None: they do not.
+    pub strengthening: Option<RateStrengthening>,
     /// The strain whose rate is used.
     pub strain_rate_measure: StrainRateMeasure,
     /// The contact law of the two ends acts beside the bond.
@@ -80,6 +81,11 @@ pub struct BondRule {
 }
 
 impl BondRule {
+    /// Whether a bond keeps the largest factor of its strain rates.
+    pub fn keeps_largest_factor(&self) -> bool {
+        self.strengthening.as_ref().is_some_and(|s| s.keeps_largest)
+    }
+
     /// Whether bonds resist relative motion, by coefficients or by structural damping.
     pub(crate) fn is_damped(&self) -> bool {
         self.damped || self.structural_damping > 0.0

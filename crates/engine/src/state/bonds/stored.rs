@@ -4,12 +4,12 @@ use dem_physics::bond::flat_joint::FlatJointLaw;
 use dem_physics::bond::total::End;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::law::BondLaw;
+use super::law::BondRule;
 
 /// A bond whose history goes to a file or comes from one. There, vectors are in the axes of the
 /// body, and each goes from the particle with the smaller number to the other one.
 pub(crate) struct StoredBond {
-    pub(crate) law: BondLaw,
+    pub(crate) rule: BondRule,
     /// Unit vector from the first to the second end without load.
     pub(crate) direction: Vector3<f64>,
     pub(crate) radius_m: f64,
