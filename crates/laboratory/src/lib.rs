@@ -5,9 +5,11 @@
 //! [`MeasuredMaterial`], which scenes take as their target.
 
 mod area;
+mod confidence;
 mod curve;
 mod elastic;
 mod evaluation;
+mod failure_line;
 pub mod figure;
 mod fit;
 mod head;
@@ -19,6 +21,7 @@ mod numbers;
 mod outlier;
 mod page;
 mod regions;
+mod residual;
 mod specimen;
 mod statistic;
 mod table;
@@ -28,17 +31,20 @@ pub mod theory;
 mod units;
 
 pub use area::area_between;
+pub use confidence::{half_width, student_95};
 pub use curve::{ColumnChoice, Curve, FAILED};
 pub use elastic::{ELASTIC, elastic_line, elastic_rows};
 pub use evaluation::{EvaluatedSpecimen, LONGEST_SEATING, MeasuredSpecimen, evaluate};
+pub use failure_line::FailureLine;
 pub use fit::Line;
 pub use head::Column;
 pub use largest::{LargestForce, largest_force};
 pub use list::{ListedSpecimen, read_list};
 pub use material::{FORMAT_VERSION, MeasuredMaterial, material};
 pub use mean_curve::CurvePoint;
-pub use page::{page, regions_plot, statistics};
+pub use page::{Series, page, page_of_series, regions_plot, statistics};
 pub use regions::Regions;
+pub use residual::{has_passed_its_peak, residual_n};
 pub use specimen::{Dimensions, Specimen, TestType};
 pub use statistic::Statistic;
 pub use table::{Table, read_text};

@@ -12,7 +12,7 @@ pub mod cluster;
 pub mod collect;
 pub mod curves;
 pub mod expand;
-pub mod failure_line;
+mod failure_line;
 pub mod folder;
 pub(crate) mod front;
 pub mod jobs;

@@ -3,10 +3,10 @@
 use dem_scene::study::Average;
 use serde::Serialize;
 
-use super::failure_line::FailureLine;
 use super::response::Response;
 use super::row::Row;
 use super::search::Search;
+use dem_laboratory::FailureLine;
 
 /// All results of a sweep. SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -7,7 +7,7 @@ use dem_scene::study::{Axis, RunTime, Study};
 
 use super::chance;
 use super::expand::Run;
-use super::failure_line::FailureLine;
+use super::failure_line::failure_line;
 use super::front::{Point, front};
 use super::judge::{in_words, judge};
 use super::median::median;
@@ -55,8 +55,8 @@ impl SweepTable {
         notes.extend(chance::notes(study, &responses));
         let (find, of_search) = found(study, &responses, looked_for).unzip();
         notes.extend(of_search.unwrap_or_default());
-        let failure_line = FailureLine::of(study, &rows);
-        notes.extend(failure_line.as_ref().map(FailureLine::note));
+        let failure_line = failure_line(study, &rows);
+        notes.extend(failure_line.as_ref().map(dem_laboratory::FailureLine::note));
         Self {
             study: study.source.clone(),
             scene: study.scene.display().to_string(),

@@ -1,6 +1,6 @@
 //! Confidence intervals of means.
 
-use dem_laboratory::Statistic;
+use crate::statistic::Statistic;
 
 /// 97.5 % quantiles of Student's t distribution for 1 to 30 degrees of freedom.
 const STUDENT: [f64; 30] = [
