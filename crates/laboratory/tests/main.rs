@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod area;
+mod failure_line;
 mod files;
 mod synthetic;
 mod theory;
