@@ -136,7 +136,10 @@ fn shortened(line: &str) -> Option<String> {
         .replace(" -o tablet.toml --", " -o tablet.toml --packings 2 --")
         .replace(" 4.6mm..5.1mm", " 10mm..12mm")
         .replace("/lumps.toml", "/lumps.toml --set run.end_time=0.1")
-        .replace("-crusher-ore.toml", "-crusher-ore.toml --set run.end_time=0.4")
+        .replace(
+            "-crusher-ore.toml",
+            "-crusher-ore.toml --set run.end_time=0.4",
+        )
         .replace("/crusher-gap.toml", "/crusher-gap.toml --list")
         .replace(
             " data/studies/spinning-bar.toml",

@@ -6,7 +6,7 @@
 //! numbers, and ends when all targets are met, or cannot be met.
 
 mod case;
-mod confidence;
+mod joint;
 mod page;
 mod record;
 mod resolution;
@@ -17,7 +17,11 @@ mod text;
 mod unknown;
 
 pub use case::{Case, End, Round, Start, Trial};
-pub use confidence::half_width;
+pub use dem_laboratory::half_width;
+pub use joint::{
+    Aim, Free, JOINT_VERSION, Joint, JointStart, JointTest, calibrate_joint, check_joint_rate,
+    joint_origin, joint_page, joint_report, next_of_joint, read_joint, weighted_step, write_joint,
+};
 pub use page::{page, sizes};
 pub use record::{FORMAT_VERSION, Record, read_record, write_record};
 pub use resolution::{coarsest, curve_error};

@@ -55,7 +55,7 @@ pub fn page(record: &Record, most_error: Option<f64>) -> String {
 }
 
 /// A table whose first column is text.
-fn table<const N: usize>(heads: &[&str; N], rows: Vec<[String; N]>) -> Table {
+pub(crate) fn table<const N: usize>(heads: &[&str; N], rows: Vec<[String; N]>) -> Table {
     Table {
         columns: columns(heads),
         rows: rows
@@ -65,7 +65,7 @@ fn table<const N: usize>(heads: &[&str; N], rows: Vec<[String; N]>) -> Table {
     }
 }
 
-fn columns(heads: &[&str]) -> Vec<Column> {
+pub(crate) fn columns(heads: &[&str]) -> Vec<Column> {
     let column = |(at, name): (usize, &&str)| match at {
         0 => Column::text(name),
         _ => Column::number(name),

@@ -38,7 +38,13 @@ pub fn calibrate(
         if at == case.rounds.len() {
             case.rounds.push(Round::new(factors.clone(), packings));
         }
-        do_round(case, Which::Number(at), workers, test, save)?;
+        do_round(
+            case,
+            &|case: &mut Case| case.rounds.get_mut(at),
+            workers,
+            test,
+            save,
+        )?;
         match next(unknowns, start.as_ref(), &case.rounds[..=at]) {
             Step::Try(new) => factors = new,
             Step::Stop(best, end) => case.end = Some((best, coarse(end, case.spheres_across))),
@@ -70,34 +76,27 @@ pub fn check_rate(
         let of = |round: &Round| Round::new(round.factors.clone(), round.trials.len());
         case.at_twice_the_rate = case.result().map(of);
     }
-    do_round(case, Which::TwiceTheRate, workers, test, save)
+    do_round(
+        case,
+        &|case: &mut Case| case.at_twice_the_rate.as_mut(),
+        workers,
+        test,
+        save,
+    )
 }
 
-/// A round of a case.
-#[derive(Debug, Clone, Copy)]
-enum Which {
-    Number(usize),
-    TwiceTheRate,
-}
+/// A round of what is calibrated.
+pub(crate) type RoundOf<'a, C> = dyn Fn(&mut C) -> Option<&mut Round> + Sync + 'a;
 
-impl Which {
-    fn of(self, case: &mut Case) -> Option<&mut Round> {
-        match self {
-            Self::Number(at) => case.rounds.get_mut(at),
-            Self::TwiceTheRate => case.at_twice_the_rate.as_mut(),
-        }
-    }
-}
-
-/// Does the tests of a round that are not done, some at a time.
-fn do_round(
-    case: &mut Case,
-    which: Which,
+/// Does the tests of a round of `case` that are not done, some at a time.
+pub(crate) fn do_round<C: Send>(
+    case: &mut C,
+    round_of: &RoundOf<'_, C>,
     workers: usize,
     test: &TestFunction<'_>,
-    save: &SaveFunction<'_>,
+    save: &(dyn Fn(&C) -> Result<()> + Sync + '_),
 ) -> Result<()> {
-    let Some(round) = which.of(case) else {
+    let Some(round) = round_of(case) else {
         return Ok(());
     };
     let factors = round.factors.clone();
@@ -114,7 +113,7 @@ fn do_round(
             let Ok(mut guard) = shared.lock() else { return };
             let (case, problem) = &mut *guard;
             let saved = done.and_then(|trial| {
-                if let Some(round) = which.of(case) {
+                if let Some(round) = round_of(case) {
                     round.trials[packing] = Some(trial);
                 }
                 save(case)

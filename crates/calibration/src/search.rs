@@ -1,9 +1,9 @@
 //! The next factors, from the results so far: secants of the logarithms.
 
 use crate::case::{End, Round, Start};
-use crate::confidence::half_width;
 use crate::response::Response;
 use crate::unknown::Unknown;
+use dem_laboratory::half_width;
 
 /// Rounds of tests after which a calibration ends if all results are proportional to their numbers.
 const MOST_ROUNDS: usize = 4;
@@ -12,10 +12,10 @@ const MOST_ROUNDS_OF_OTHERS: usize = 10;
 /// Rounds after which it ends, those without a result included.
 const MOST_ROUNDS_AT_ALL: usize = 12;
 /// Largest factor on the strength of bodies that do not break within the stroke.
-const MUCH_WEAKER: f64 = 0.25;
+pub(crate) const MUCH_WEAKER: f64 = 0.25;
 /// Largest relative deviation of a mean that is accepted because its target is within the
 /// confidence interval.
-const FURTHEST_WITHIN_SCATTER: f64 = 0.05;
+pub(crate) const FURTHEST_WITHIN_SCATTER: f64 = 0.05;
 /// Smallest change of the logarithm of a factor from which the slope of a single result is taken.
 const FEWEST_CHANGE: f64 = 0.1;
 /// Range of the size of slopes of results that are not proportional.
@@ -24,9 +24,9 @@ const SIZES_OF_SLOPES: [f64; 2] = [0.1, 5.0];
 /// is not known, and in others.
 const CHANGES: [f64; 2] = [0.4, 1.0];
 /// A result that follows its number less than this does not depend on it.
-const FLAT: f64 = 0.05;
+pub(crate) const FLAT: f64 = 0.05;
 /// Largest factor on a number of the scene, and the inverse of the smallest.
-const FURTHEST: f64 = 1e3;
+pub(crate) const FURTHEST: f64 = 1e3;
 
 /// What is to be done after a round.
 #[derive(Debug, Clone, PartialEq)]

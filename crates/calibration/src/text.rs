@@ -6,13 +6,13 @@ use dem_io::units::{show_length, show_quantity, significant};
 use dem_laboratory::Statistic;
 
 use crate::case::{Case, End};
-use crate::confidence::half_width;
 use crate::record::Record;
 use crate::resolution::{coarsest, curve_error};
 use crate::unknown::{Number, Unknown};
+use dem_laboratory::half_width;
 
 /// Change of a result at half the rate above which it is in doubt.
-const RATE_MATTERS: f64 = 0.02;
+pub(crate) const RATE_MATTERS: f64 = 0.02;
 
 /// The result for a terminal, some lines for each size of spheres; `most_error`: wanted error of
 /// the curve, for which the coarsest size is named.
@@ -60,7 +60,7 @@ pub fn report(record: &Record, most_error: Option<f64>) -> String {
     text
 }
 
-fn line(text: &mut String, name: &str, value: &str) {
+pub(crate) fn line(text: &mut String, name: &str, value: &str) {
     // Writing to a String cannot fail.
     let _ = writeln!(text, "{name:12} {value}");
 }
@@ -173,7 +173,7 @@ pub(crate) fn warnings(record: &Record, case: &Case) -> Vec<String> {
 }
 
 /// A relative change with half its 95 % confidence interval.
-fn change_text(change: &Statistic) -> String {
+pub(crate) fn change_text(change: &Statistic) -> String {
     let mean = format!("{:+.1} %", 100.0 * change.mean);
     match half_width(change) {
         Some(half) => format!("{mean} (± {:.1} %)", 100.0 * half),
@@ -185,17 +185,7 @@ fn change_text(change: &Statistic) -> String {
 /// result of one and of the mean of as many, which scatter as these do (Student's t).
 fn other_packings(record: &Record, case: &Case) -> Option<(&'static str, String)> {
     let round = case.result()?;
-    let of = |(at, unknown): (usize, &Unknown)| {
-        let statistic = round.statistic(at)?;
-        let count = statistic.count as f64;
-        // half_width has a factor of 1/sqrt(count).
-        let half = half_width(&statistic)? / statistic.mean;
-        let [one, mean] = [(count + 1.0).sqrt(), 2.0_f64.sqrt()].map(|wide| 100.0 * wide * half);
-        Some(format!(
-            "{} ± {mean:.0} % (one ± {one:.0} %)",
-            unknown.result
-        ))
-    };
+    let of = |(at, unknown): (usize, &Unknown)| prediction(&unknown.result, &round.statistic(at)?);
     let all: Vec<String> = (record.unknowns.iter().enumerate())
         .filter_map(of)
         .collect();
@@ -207,6 +197,15 @@ fn other_packings(record: &Record, case: &Case) -> Option<(&'static str, String)
             format!("mean of {count} other packings, 95 %: {means}"),
         )
     })
+}
+
+/// Prediction intervals of a result, relative to its mean. None for a single packing.
+pub(crate) fn prediction(result: &str, statistic: &Statistic) -> Option<String> {
+    let count = statistic.count as f64;
+    // half_width has a factor of 1/sqrt(count).
+    let half = half_width(statistic)? / statistic.mean;
+    let [one, mean] = [(count + 1.0).sqrt(), 2.0_f64.sqrt()].map(|wide| 100.0 * wide * half);
+    Some(format!("{result} ± {mean:.0} % (one ± {one:.0} %)"))
 }
 
 /// What half the rate changes.

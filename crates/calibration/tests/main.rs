@@ -1,6 +1,8 @@
 //! Calibration of made-up tests whose results are known in closed form.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod joint;
+
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

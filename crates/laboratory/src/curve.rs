@@ -1,7 +1,7 @@
 //! Force over travel as a test rig has measured it: which columns of a table they are, their units,
 //! their signs.
 
-use dem_io::units::{Dimension, FORCE, LENGTH};
+use dem_io::units::{Dimension, FORCE, LENGTH, STRESS};
 use dem_io::{Diagnostic, Result};
 
 use crate::head::Column;
@@ -22,8 +22,8 @@ pub const FAILED: f64 = 0.75;
 const DRIVEN_BACK: f64 = 0.5;
 /// Largest difference of two columns that hold the same, as a fraction of their range.
 const SAME: f64 = 1e-3;
-/// Largest travel, m, and force, N, that a test rig has.
-const LARGEST: [f64; 2] = [100.0, 1e9];
+/// Largest travel, m, force, N, and stress, Pa, that a test rig has.
+const LARGEST: [f64; 3] = [100.0, 1e9, 1e12];
 
 /// Words by which a column of travel is known, and of force.
 const TRAVEL_WORDS: [&str; 20] = [
@@ -51,6 +51,9 @@ const TRAVEL_WORDS: [&str; 20] = [
 const FORCE_WORDS: [&str; 10] = [
     "force", "load", "kraft", "last", "effort", "kuvvet", "yük", "fuerza", "carga", "forza",
 ];
+/// Words of the stress that stands for the force in tests under pressure, and of any stress.
+const SHEAR_STRESS_WORDS: [&str; 4] = ["shear", "deviator", "schubspannung", "scherspannung"];
+const STRESS_WORDS: [&str; 2] = ["stress", "spannung"];
 /// Words that hold one of these by chance.
 const OTHER_WORDS: [&str; 2] = ["elastic", "plastic"];
 
@@ -99,29 +102,54 @@ impl Curve {
     /// # Errors
     /// No column, or several, could be meant; no unit; a cell that is no number; as [`Self::new`].
     pub fn of(table: &Table, travel: &ColumnChoice, force: &ColumnChoice) -> Result<Self> {
-        let travel = Wanted {
-            name: "travel",
-            dimension: &LENGTH,
-            unit: "mm",
-            words: &TRAVEL_WORDS,
-            option: "--travel",
-            choice: travel,
-            place: 0,
-            largest: LARGEST[0],
-        };
-        let force = Wanted {
-            name: "force",
-            dimension: &FORCE,
-            unit: "N",
-            words: &FORCE_WORDS,
-            option: "--force",
-            choice: force,
-            place: 1,
-            largest: LARGEST[1],
-        };
         let mut notes = Vec::new();
-        let travel_m = travel.values(table, &mut notes)?;
-        let force_n = force.values(table, &mut notes)?;
+        let travel_m = Wanted::travel(travel).values(table, &mut notes)?;
+        let force_n = Wanted::force(force).values(table, &mut notes)?;
+        Self::of_columns(table, travel_m, force_n, notes)
+    }
+
+    /// The curve in a table of a test under pressure, whose file may have a stress in place of the
+    /// force: the shear stress, or the axial stress above the pressure. It is multiplied by the
+    /// area, m2.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn of_stress(
+        table: &Table,
+        travel: &ColumnChoice,
+        force: &ColumnChoice,
+        area_m2: f64,
+    ) -> Result<Self> {
+        let is_force = match &force.unit {
+            Some(unit) => size_of(unit, &STRESS).is_none(),
+            None => {
+                let columns = Wanted::force(force).columns(table)?;
+                let unit = columns.first().map(|at| table.columns[*at].unit.as_str());
+                unit.is_some_and(|unit| size_of(unit, &STRESS).is_none())
+            }
+        };
+        if is_force {
+            return Self::of(table, travel, force);
+        }
+        let sheared = Wanted::stress(force, &SHEAR_STRESS_WORDS);
+        let any = Wanted::stress(force, &STRESS_WORDS);
+        let mut notes = Vec::new();
+        let travel_m = Wanted::travel(travel).values(table, &mut notes)?;
+        let stress_pa = match sheared.columns(table)?.is_empty() {
+            true => any.values(table, &mut notes)?,
+            false => sheared.values(table, &mut notes)?,
+        };
+        let force_n = stress_pa.iter().map(|stress| stress * area_m2).collect();
+        notes.push("the force is the stress of the file times the area".to_owned());
+        Self::of_columns(table, travel_m, force_n, notes)
+    }
+
+    fn of_columns(
+        table: &Table,
+        travel_m: Vec<f64>,
+        force_n: Vec<f64>,
+        mut notes: Vec<String>,
+    ) -> Result<Self> {
         refuse_other_specimens(table, &travel_m)?;
         let lines = (0..table.len()).map(|row| table.line(row)).collect();
         let mut curve = Self::new(travel_m, force_n, lines)?;
@@ -253,6 +281,45 @@ impl Curve {
             }
         }
         Ok(())
+    }
+}
+
+impl<'a> Wanted<'a> {
+    fn travel(choice: &'a ColumnChoice) -> Self {
+        Self {
+            name: "travel",
+            dimension: &LENGTH,
+            unit: "mm",
+            words: &TRAVEL_WORDS,
+            option: "--travel",
+            choice,
+            place: 0,
+            largest: LARGEST[0],
+        }
+    }
+
+    fn force(choice: &'a ColumnChoice) -> Self {
+        Self {
+            name: "force",
+            dimension: &FORCE,
+            unit: "N",
+            words: &FORCE_WORDS,
+            option: "--force",
+            choice,
+            place: 1,
+            largest: LARGEST[1],
+        }
+    }
+
+    fn stress(choice: &'a ColumnChoice, words: &'a [&'a str]) -> Self {
+        Self {
+            name: "stress",
+            dimension: &STRESS,
+            unit: "kPa",
+            words,
+            largest: LARGEST[2],
+            ..Self::force(choice)
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::curve::{Curve, FAILED};
 use crate::outlier::outlier;
 use crate::regions::Regions;
+use crate::residual::{has_passed_its_peak, residual_n};
 use crate::specimen::{Specimen, TestType};
 
 /// Largest seating of a valid specimen, as a fraction of the travel at failure.
@@ -39,11 +40,13 @@ pub struct EvaluatedSpecimen {
     pub measured: MeasuredSpecimen,
     /// Regions of the curve.
     pub regions: Regions,
-    /// Young's modulus by the crosshead travel, Pa. None for a disc, and for a dog bone, whose wide
-    /// ends yield as well.
+    /// Young's modulus by the crosshead travel, Pa. None for a disc, for a dog bone, whose wide ends
+    /// yield as well, and for direct shear.
     pub young_modulus_pa: Option<f64>,
     /// Stress at the largest force, Pa.
     pub strength_pa: f64,
+    /// Stress that is left at the end of a test under pressure, Pa. None: of other tests.
+    pub residual_pa: Option<f64>,
     /// Travel at the largest force from where the fitted line has no force, m.
     pub travel_at_failure_m: f64,
     /// Why it is left out, a sentence each. Empty: it is valid.
@@ -126,6 +129,8 @@ fn impossible(
     let check = "check the units of travel and force and the dimensions";
     let mut found = Vec::new();
     let (strain, most) = match measured.specimen {
+        // A shear plane has no strain.
+        Specimen::Bar { .. } if measured.test == TestType::DirectShear => (LEAST_STRAIN, 1.0),
         Specimen::Bar { length_m, .. } => match measured.test {
             TestType::Tension | TestType::DogBone => (travel_at_failure_m / length_m, 10.0),
             _ => (travel_at_failure_m / length_m, 0.95),
@@ -160,29 +165,62 @@ fn impossible(
     found
 }
 
+/// Force that is left at the end of a curve, N.
+fn residual_of(measured: &MeasuredSpecimen, regions: &Regions) -> Option<f64> {
+    let travel_m: Vec<f64> = (measured.curve.travel_m.iter())
+        .map(|travel_m| travel_m - measured.curve.travel_m[0])
+        .collect();
+    residual_n(&travel_m, &regions.corrected_n)
+}
+
+/// Says that a specimen did not fail: its force does not fall, or, with a residual force, N, ends
+/// at its peak.
+fn not_failed(regions: &Regions, residual_n: Option<f64>) -> Option<String> {
+    if let Some(residual_n) = residual_n {
+        return (!has_passed_its_peak(residual_n, regions.largest_n)).then(|| {
+            format!(
+                "it did not pass its peak: the force is still {:.0} % of its largest at the end",
+                100.0 * residual_n / regions.largest_n
+            )
+        });
+    }
+    let behind = &regions.corrected_n[regions.peak..];
+    let least_n = behind
+        .iter()
+        .fold(f64::INFINITY, |least, force| least.min(*force));
+    (least_n > FAILED * regions.largest_n).then(|| {
+        format!(
+            "it did not fail: the force is still {:.0} % of its largest at the end",
+            100.0 * least_n / regions.largest_n
+        )
+    })
+}
+
 fn evaluate_one(measured: MeasuredSpecimen) -> EvaluatedSpecimen {
     let curve = &measured.curve;
     let regions = Regions::of(curve);
     let travel_at_failure_m = regions.travel_at_failure_m(curve);
-    let mut doubts = regions.doubts.clone();
+    let has_residual = measured.test.has_residual();
+    let mut notes = regions.notes.clone();
+    // Shear boxes and cells load the specimen from the first row on, and soils yield early.
+    let mut doubts = match has_residual {
+        true => {
+            notes.extend(regions.doubts_of_stiffness.clone());
+            Vec::new()
+        }
+        false => regions.doubts_of_stiffness.clone(),
+    };
+    doubts.extend(regions.doubts.clone());
     let loaded = regions.peak - regions.contact;
     if loaded < FEWEST_LOADED {
         doubts.push(format!(
             "only {loaded} rows lie between contact and the largest force"
         ));
     }
-    let behind = &regions.corrected_n[regions.peak..];
-    let least_n = behind
-        .iter()
-        .fold(f64::INFINITY, |least, force| least.min(*force));
-    if least_n > FAILED * regions.largest_n {
-        doubts.push(format!(
-            "it did not fail: the force is still {:.0} % of its largest at the end",
-            100.0 * least_n / regions.largest_n
-        ));
-    }
+    let residual_n = residual_of(&measured, &regions);
+    doubts.extend(not_failed(&regions, residual_n.filter(|_| has_residual)));
     let seating_m = regions.seating_m(curve);
-    if seating_m > LONGEST_SEATING * travel_at_failure_m {
+    if !has_residual && seating_m > LONGEST_SEATING * travel_at_failure_m {
         doubts.push(format!(
             "its seating takes {:.3} mm, {:.0} % of the travel at failure",
             1e3 * seating_m,
@@ -200,7 +238,7 @@ fn evaluate_one(measured: MeasuredSpecimen) -> EvaluatedSpecimen {
     }
     let young_modulus_pa = (measured.specimen)
         .modulus_pa(regions.stiffness_n_m)
-        .filter(|_| measured.test != TestType::DogBone);
+        .filter(|_| !matches!(measured.test, TestType::DogBone | TestType::DirectShear));
     let strength_pa = measured.specimen.stress_pa(regions.largest_n);
     doubts.extend(impossible(
         &measured,
@@ -212,7 +250,10 @@ fn evaluate_one(measured: MeasuredSpecimen) -> EvaluatedSpecimen {
         young_modulus_pa,
         strength_pa,
         travel_at_failure_m,
-        notes: regions.notes.clone(),
+        residual_pa: residual_n
+            .filter(|_| has_residual)
+            .map(|force_n| measured.specimen.stress_pa(force_n)),
+        notes,
         regions,
         doubts,
         measured,

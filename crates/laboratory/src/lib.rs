@@ -5,10 +5,12 @@
 //! [`MeasuredMaterial`], which scenes take as their target.
 
 mod area;
+mod confidence;
 mod curve;
 pub mod drop_weight;
 mod elastic;
 mod evaluation;
+mod failure_line;
 pub mod figure;
 mod fit;
 mod head;
@@ -20,6 +22,7 @@ mod numbers;
 mod outlier;
 mod page;
 mod regions;
+mod residual;
 mod specimen;
 mod statistic;
 mod student;
@@ -30,17 +33,20 @@ pub mod theory;
 mod units;
 
 pub use area::area_between;
+pub use confidence::half_width;
 pub use curve::{ColumnChoice, Curve, FAILED};
 pub use elastic::{ELASTIC, elastic_line, elastic_rows};
 pub use evaluation::{EvaluatedSpecimen, LONGEST_SEATING, MeasuredSpecimen, evaluate};
+pub use failure_line::FailureLine;
 pub use fit::Line;
 pub use head::Column;
 pub use largest::{LargestForce, largest_force};
 pub use list::{ListedSpecimen, read_list};
 pub use material::{FORMAT_VERSION, MeasuredMaterial, material};
 pub use mean_curve::CurvePoint;
-pub use page::{page, regions_plot, statistics};
+pub use page::{Series, page, page_of_series, regions_plot, statistics};
 pub use regions::Regions;
+pub use residual::{has_passed_its_peak, residual_n};
 pub use specimen::{Dimensions, Specimen, TestType};
 pub use statistic::Statistic;
 pub use student::student_95;

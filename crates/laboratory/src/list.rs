@@ -3,7 +3,6 @@
 
 use std::path::{Path, PathBuf};
 
-use dem_io::units::{AREA, LENGTH};
 use dem_io::{Diagnostic, Result};
 
 use crate::specimen::Dimensions;
@@ -55,7 +54,7 @@ pub fn read_list(path: &Path) -> Result<Vec<ListedSpecimen>> {
             let remedy = format!("use file, {}", known.join(", "));
             return Err(within(Diagnostic::input("line 1", problem, remedy)));
         }
-        let dimension = if name == "area" { &AREA } else { &LENGTH };
+        let dimension = Dimensions::unit_of(name).0;
         sizes[at] = size_of(&table.columns[at].unit, dimension).ok_or_else(|| {
             let problem = format!("the column '{name}' has no unit of {}", dimension.named());
             within(Diagnostic::input(

@@ -21,6 +21,9 @@ pub struct MeasuredMaterial {
     pub young_modulus_pa: Option<Statistic>,
     /// Strength, Pa.
     pub strength_pa: Statistic,
+    /// Stress that is left behind the peak of a test under pressure, Pa. None: of other tests.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_pa: Option<Statistic>,
     /// Force over travel of the linear part, scaled, N/m.
     pub stiffness_n_m: Statistic,
     /// Largest force, scaled, N.
@@ -60,6 +63,7 @@ pub fn material(
     };
     let factor = |one: &EvaluatedSpecimen| one.measured.specimen.force_factor(reference);
     let moduli: Option<Vec<f64>> = valid.iter().map(|one| one.young_modulus_pa).collect();
+    let residuals: Option<Vec<f64>> = valid.iter().map(|one| one.residual_pa).collect();
     let end_of_linear = |one: &EvaluatedSpecimen, row: usize| {
         (one.regions.corrected_n[row] / one.regions.largest_n).clamp(0.0, 1.0)
     };
@@ -69,6 +73,7 @@ pub fn material(
         dimensions: *dimensions,
         young_modulus_pa: moduli.map(|moduli| Statistic::of(&moduli)),
         strength_pa: of(&|one| one.strength_pa),
+        residual_pa: residuals.map(|residuals| Statistic::of(&residuals)),
         stiffness_n_m: of(&|one| factor(one) * one.regions.stiffness_n_m),
         failure_force_n: of(&|one| factor(one) * one.regions.largest_n),
         travel_at_failure_m: of(&|one| one.travel_at_failure_m),

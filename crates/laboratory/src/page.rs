@@ -6,8 +6,9 @@ use dem_io::units::show_quantity;
 use dem_plots::{Column, Line, MOST_LINES, Page, Plot, Row, Table};
 
 use crate::evaluation::EvaluatedSpecimen;
+use crate::failure_line::FailureLine;
 use crate::material::MeasuredMaterial;
-use crate::specimen::{Dimensions, Specimen};
+use crate::specimen::{Dimensions, Specimen, TestType};
 use crate::statistic::Statistic;
 
 /// Everything about a series on one page that needs no other file. `material`: of the valid
@@ -18,6 +19,100 @@ pub fn page(
     reference: &Specimen,
 ) -> String {
     let mut page = Page::new("measured curves");
+    add_series(&mut page, evaluated, material, reference);
+    page.html()
+}
+
+/// The specimens of one pressure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Type of test.
+    pub test: TestType,
+    /// Dimensions to which they are scaled, with the pressure.
+    pub dimensions: Dimensions,
+    /// The specimen of these dimensions.
+    pub reference: Specimen,
+    /// The specimens.
+    pub evaluated: Vec<EvaluatedSpecimen>,
+    /// What the valid ones say. None: there are none.
+    pub material: Option<MeasuredMaterial>,
+}
+
+impl Series {
+    /// The pressure, Pa.
+    pub fn pressure_pa(&self) -> f64 {
+        self.dimensions.pressure_pa().unwrap_or(0.0)
+    }
+
+    /// What the pressure is called.
+    pub fn name(&self) -> String {
+        self.test.pressure().unwrap_or("pressure").replace('_', " ")
+    }
+}
+
+/// Everything about series under several pressures on one page, with the line through their
+/// strengths.
+pub fn page_of_series(series: &[Series], line: Option<&FailureLine>) -> String {
+    let mut page = Page::new("measured curves");
+    if let Some(line) = line {
+        page.paragraph(&line.note());
+        page.figure(&strengths_plot(series, line).svg());
+    }
+    for one in series {
+        page.heading(&format!(
+            "{} {}",
+            one.name(),
+            show_quantity(one.pressure_pa(), "Pa")
+        ));
+        add_series(
+            &mut page,
+            &one.evaluated,
+            one.material.as_ref(),
+            &one.reference,
+        );
+    }
+    page.html()
+}
+
+/// Strengths of the valid specimens over the pressure, and the line of Mohr and Coulomb.
+fn strengths_plot(series: &[Series], line: &FailureLine) -> Plot {
+    let test = series.first().map(|one| one.test);
+    let mut means = Vec::new();
+    let mut residuals = Vec::new();
+    let mut fitted = Vec::new();
+    for one in series {
+        let Some(material) = &one.material else {
+            continue;
+        };
+        let pressure_pa = one.pressure_pa();
+        means.push([pressure_pa, material.strength_pa.mean]);
+        residuals.extend(
+            material
+                .residual_pa
+                .map(|stress| [pressure_pa, stress.mean]),
+        );
+        fitted.push([pressure_pa, line.strength_pa(test, pressure_pa)]);
+    }
+    let lines = vec![
+        Line::new("strength", means),
+        Line::new("residual strength", residuals),
+        Line::dashed("Mohr and Coulomb", fitted),
+    ];
+    Plot::of(
+        "Strength over pressure",
+        "pressure (Pa)",
+        "strength (Pa)",
+        lines,
+    )
+}
+
+/// Numbers, mean curve and specimens of a series.
+fn add_series(
+    page: &mut Page,
+    evaluated: &[EvaluatedSpecimen],
+    material: Option<&MeasuredMaterial>,
+    reference: &Specimen,
+) {
     if let Some(material) = material {
         page.paragraph(&format!(
             "{}, scaled to {}",
@@ -71,7 +166,6 @@ pub fn page(
         page.figure(&regions_plot(one).svg());
         page.list(&[sentences, one.all_notes()].concat());
     }
-    page.html()
 }
 
 /// Names, units and values of what a series says.
@@ -86,6 +180,9 @@ pub fn statistics(material: &MeasuredMaterial) -> Vec<(&'static str, &'static st
         ),
         ("stiffness", "N/m", material.stiffness_n_m),
     ];
+    if let Some(residual) = material.residual_pa {
+        all.insert(1, ("residual strength", "Pa", residual));
+    }
     if let Some(modulus) = material.young_modulus_pa {
         all.insert(0, ("Young's modulus", "Pa", modulus));
     }
@@ -127,7 +224,7 @@ fn specimen_row(one: &EvaluatedSpecimen) -> Row {
 fn dimensions(dimensions: &Dimensions) -> String {
     let one = |name: &&str| {
         let value = dimensions.get(name)?;
-        let unit = if *name == "area" { "m2" } else { "m" };
+        let unit = Dimensions::unit_of(name).1;
         Some(format!(
             "{} {}",
             name.replace('_', " "),

@@ -62,6 +62,8 @@ pub struct Regions {
     pub largest_n: f64,
     /// What speaks against the curve, a sentence each.
     pub doubts: Vec<String>,
+    /// What speaks against its stiffness, a sentence each.
+    pub doubts_of_stiffness: Vec<String>,
     /// What was assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -84,20 +86,22 @@ impl Regions {
         let peak = largest(&corrected_n);
         let contact = baseline.contact.min(peak);
         let largest_n = largest_force(travel, &corrected_n).map_or(f64::NAN, |found| found.force_n);
-        let mut doubts = Vec::new();
+        let mut doubts_of_stiffness = Vec::new();
         if contact == 0 {
-            doubts.push(
+            doubts_of_stiffness.push(
                 "it begins in contact: the offset of the load cell is taken to be 0".to_owned(),
             );
         }
         let (linear, change) = linear_part(travel, &corrected_n, contact, peak, largest_n);
         if change > NOT_LINEAR {
-            doubts.push(format!(
+            doubts_of_stiffness.push(format!(
                 "it has no linear part: the slope changes by {:.0} % in the straightest",
                 100.0 * change
             ));
         }
-        doubts.extend(two_peaks(curve, &corrected_n, largest_n));
+        let doubts = two_peaks(curve, &corrected_n, largest_n)
+            .into_iter()
+            .collect();
         let rising = contact..peak + 1;
         let (ways_m, loads_n) = (&travel[rising.clone()], &corrected_n[rising]);
         let mut notes: Vec<String> = drift.into_iter().collect();
@@ -118,6 +122,7 @@ impl Regions {
             largest_n,
             corrected_n,
             doubts,
+            doubts_of_stiffness,
             notes,
         }
     }

@@ -1,10 +1,15 @@
 //! What is tested: the type of test and the dimensions of a specimen, and what force and stiffness
 //! say of its material.
 
+use dem_io::units::{AREA, Dimension, LENGTH, STRESS};
 use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
 use crate::theory::{Beam, bar_stress_pa, disc_stress_pa};
+
+/// Names of the pressures under which specimens are tested.
+const CONFINING_PRESSURE: &str = "confining_pressure";
+const NORMAL_STRESS: &str = "normal_stress";
 
 /// Type of a laboratory test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,7 +42,8 @@ pub enum TestType {
     DropWeight,
 }
 
-/// Dimensions of a specimen; those that its test does not have stay empty.
+/// Dimensions of a specimen, and the pressure under which it is tested; those that its test does not
+/// have stay empty.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dimensions {
     /// Distance of the supports of a beam, m.
@@ -58,6 +64,12 @@ pub struct Dimensions {
     /// Area of its section, m2.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area_m2: Option<f64>,
+    /// Pressure on the sides of a triaxial test, Pa.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub confining_pressure_pa: Option<f64>,
+    /// Stress on the plane of a direct shear test, Pa.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal_stress_pa: Option<f64>,
 }
 
 /// A specimen in its test.
@@ -131,7 +143,16 @@ impl TestType {
         matches!(self, Self::TriaxialCompression | Self::DirectShear)
     }
 
-    /// Names of the dimensions that it needs.
+    /// Name of the pressure under which it is done.
+    pub fn pressure(self) -> Option<&'static str> {
+        match self {
+            Self::TriaxialCompression => Some(CONFINING_PRESSURE),
+            Self::DirectShear => Some(NORMAL_STRESS),
+            _ => None,
+        }
+    }
+
+    /// Names of the dimensions that it has.
     pub fn dimensions(self) -> &'static [&'static str] {
         match self {
             Self::FourPointBending => &["support_span", "loading_span", "width", "height"],
@@ -150,8 +171,8 @@ impl TestType {
 }
 
 impl Dimensions {
-    /// Names of all dimensions.
-    pub const NAMES: [&'static str; 6] = [
+    /// Names of all sizes.
+    pub const SIZES: [&'static str; 6] = [
         "support_span",
         "loading_span",
         "width",
@@ -159,6 +180,32 @@ impl Dimensions {
         "length",
         "area",
     ];
+
+    /// Names of all dimensions.
+    pub const NAMES: [&'static str; 8] = [
+        "support_span",
+        "loading_span",
+        "width",
+        "height",
+        "length",
+        "area",
+        CONFINING_PRESSURE,
+        NORMAL_STRESS,
+    ];
+
+    /// What a dimension is measured in, and its SI unit.
+    pub fn unit_of(name: &str) -> (&'static Dimension, &'static str) {
+        match name {
+            "area" => (&AREA, "m2"),
+            CONFINING_PRESSURE | NORMAL_STRESS => (&STRESS, "Pa"),
+            _ => (&LENGTH, "m"),
+        }
+    }
+
+    /// The pressure under which a specimen is tested, Pa.
+    pub fn pressure_pa(&self) -> Option<f64> {
+        self.confining_pressure_pa.or(self.normal_stress_pa)
+    }
 
     /// The dimension with this name.
     pub fn get(&self, name: &str) -> Option<f64> {
@@ -169,12 +216,14 @@ impl Dimensions {
             self.height_m,
             self.length_m,
             self.area_m2,
+            self.confining_pressure_pa,
+            self.normal_stress_pa,
         ];
         let at = Self::NAMES.iter().position(|other| *other == name)?;
         all[at]
     }
 
-    /// Sets the dimension with this name, m or m2.
+    /// Sets the dimension with this name, in its SI unit.
     pub fn set(&mut self, name: &str, value: f64) {
         match name {
             "support_span" => self.support_span_m = Some(value),
@@ -183,6 +232,8 @@ impl Dimensions {
             "height" => self.height_m = Some(value),
             "length" => self.length_m = Some(value),
             "area" => self.area_m2 = Some(value),
+            CONFINING_PRESSURE => self.confining_pressure_pa = Some(value),
+            NORMAL_STRESS => self.normal_stress_pa = Some(value),
             _ => {}
         }
     }
@@ -196,6 +247,8 @@ impl Dimensions {
             height_m: self.height_m.or(other.height_m),
             length_m: self.length_m.or(other.length_m),
             area_m2: self.area_m2.or(other.area_m2),
+            confining_pressure_pa: self.confining_pressure_pa.or(other.confining_pressure_pa),
+            normal_stress_pa: self.normal_stress_pa.or(other.normal_stress_pa),
         }
     }
 }
@@ -206,7 +259,16 @@ impl Specimen {
     /// # Errors
     /// A dimension missing, of another test, or not positive; loading pins not within the supports.
     pub fn new(test: TestType, dimensions: &Dimensions) -> Result<Self> {
-        let names = test.dimensions();
+        let names: Vec<&str> = test
+            .dimensions()
+            .iter()
+            .copied()
+            .chain(test.pressure())
+            .collect();
+        // The force on a shear plane does not depend on the length of the body.
+        let is_needed = |name: &str| {
+            names.contains(&name) && !(test == TestType::DirectShear && name == "length")
+        };
         for name in Dimensions::NAMES {
             let option = name.replace('_', "-");
             match dimensions.get(name) {
@@ -230,9 +292,13 @@ impl Specimen {
                         format!("correct --{option}"),
                     ));
                 }
-                None if names.contains(&name) => {
+                None if is_needed(name) => {
                     let problem = format!("{} needs the {}", test.name(), name.replace('_', " "));
-                    let example = if name == "area" { "9cm2" } else { "30mm" };
+                    let example = match Dimensions::unit_of(name).1 {
+                        "m2" => "9cm2",
+                        "Pa" => "100kPa",
+                        _ => "30mm",
+                    };
                     return Err(Diagnostic::input(
                         "",
                         problem,
@@ -302,11 +368,15 @@ impl Specimen {
 
     /// Factor by which the force on this specimen becomes that on another at the same travel: the
     /// ratio of the second moments of area in bending (Platzer 2022, 4.4.1.2), of the thicknesses
-    /// of discs, of the stiffnesses of bars.
+    /// of discs, of the stiffnesses of bars, of the areas of shear planes (bars without a length).
     pub(crate) fn force_factor(&self, other: &Self) -> f64 {
+        let has_no_length =
+            |one: &Self| matches!(one, Self::Bar { length_m, .. } if *length_m == 0.0);
+        let sheared = has_no_length(self) || has_no_length(other);
         let stiffness = |specimen: &Self| match specimen {
             Self::Beam(beam) => beam.bending_shape_m(),
             Self::Disc { thickness_m, .. } => *thickness_m,
+            Self::Bar { area_m2, .. } if sheared => *area_m2,
             Self::Bar { length_m, area_m2 } => area_m2 / length_m,
         };
         stiffness(other) / stiffness(self)

@@ -4,6 +4,7 @@
 mod area;
 mod drop_weight;
 mod drop_weight_sheets;
+mod failure_line;
 mod files;
 mod student;
 mod synthetic;

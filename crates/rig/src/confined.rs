@@ -17,23 +17,19 @@ pub const RESIDUAL: &str = "residual strength";
 /// Ratio of the residual strength to the normal stress.
 pub const RESIDUAL_FRICTION: &str = "residual friction coefficient";
 
-/// Share of the stroke at its end over which the residual stress is averaged.
-const LAST: f64 = 0.1;
-/// The stress has passed its peak if it ends below this fraction of it.
-const PASSED: f64 = 0.95;
-
 /// Whether the stress ends below its peak.
 pub(super) fn has_passed_its_peak(rows: &[Row]) -> bool {
     let residual = residual_n(rows).zip(peak(rows));
-    residual.is_some_and(|(residual_n, peak)| residual_n < PASSED * peak.load_n())
+    residual.is_some_and(|(residual_n, peak)| {
+        dem_laboratory::has_passed_its_peak(residual_n, peak.load_n())
+    })
 }
 
 /// Mean load over the last tenth of the travel, N.
 fn residual_n(rows: &[Row]) -> Option<f64> {
-    let end_m = rows.last()?.travel_m;
-    let from = rows.partition_point(|row| row.travel_m < (1.0 - LAST) * end_m);
-    let loads = rows[from..].iter().map(Row::load_n);
-    Some(loads.sum::<f64>() / (rows.len() - from) as f64)
+    let (travel_m, loads_n): (Vec<f64>, Vec<f64>) =
+        rows.iter().map(|row| (row.travel_m, row.load_n())).unzip();
+    dem_laboratory::residual_n(&travel_m, &loads_n)
 }
 
 /// What a test under pressure has besides stiffness, modulus and strength. None of it for other

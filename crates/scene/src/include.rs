@@ -169,20 +169,31 @@ fn is_turned(table: &str, one: &str, other: &str) -> bool {
 /// Materials, contacts and bonds of a scene, with included files and `--set` values, as the text of
 /// a file that other scenes can include.
 pub fn material_text(text: &str, source: &str, overrides: &[String]) -> Result<String> {
-    let (document, _) = document_of(text, source, overrides)?;
+    material_text_of_all(&[(text, source, overrides)])
+}
+
+/// The same of several scenes, each a text, its source and its `--set` values: of entries of the
+/// same name the first.
+pub fn material_text_of_all(scenes: &[(&str, &str, &[String])]) -> Result<String> {
+    let documents = scenes.iter().map(|(text, source, overrides)| {
+        document_of(text, source, overrides).map(|(document, _)| document)
+    });
+    let documents: Vec<Document> = documents.collect::<Result<_>>()?;
     let mut found = String::new();
     for table in TABLES {
-        let Some(Value::Table(entries)) = entry(&document.root, table) else {
-            continue;
-        };
-        if table == "contacts" {
+        let entries = all_entries(&documents, table);
+        if table == "contacts"
+            && documents
+                .iter()
+                .any(|one| entry(&one.root, table).is_some())
+        {
             found.push_str("\n[contacts]\n");
-            for (name, node) in entries {
-                found.push_str(&format!("{} = {}\n", key(name), toml(node)));
-            }
-            continue;
         }
         for (name, node) in entries {
+            if table == "contacts" {
+                found.push_str(&format!("{} = {}\n", key(name), toml(node)));
+                continue;
+            }
             found.push_str(&format!("\n[{table}.{}]\n", key(name)));
             if let Value::Table(values) = &node.value {
                 for (name, node) in values {
@@ -192,6 +203,23 @@ pub fn material_text(text: &str, source: &str, overrides: &[String]) -> Result<S
         }
     }
     Ok(found)
+}
+
+/// The entries of a table of several scenes, each name once.
+fn all_entries<'a>(documents: &'a [Document], table: &str) -> Vec<(&'a str, &'a Node)> {
+    let mut found: Vec<(&str, &Node)> = Vec::new();
+    for document in documents {
+        let Some(Value::Table(entries)) = entry(&document.root, table) else {
+            continue;
+        };
+        for (name, node) in entries {
+            let is_same = |other: &str| other == name || is_turned(table, other, name);
+            if !found.iter().any(|(other, _)| is_same(other)) {
+                found.push((name, node));
+            }
+        }
+    }
+    found
 }
 
 /// A number of a scene with included files and `--set` values: as written, and its unit, empty for

@@ -80,7 +80,7 @@ pub use factor::Factor;
 pub use fall::Fall;
 pub use feed_sizes::FeedSizes;
 pub use group::{ParticleGroup, Pick};
-pub use include::{include_text, material_text, set_text, written_value};
+pub use include::{include_text, material_text, material_text_of_all, set_text, written_value};
 pub use initial::Initial;
 pub use inlet::{FeedRate, Inlet, SharesBy};
 pub use load::Load;

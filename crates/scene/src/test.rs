@@ -415,14 +415,41 @@ fn measured(table: &Table<'_>, kind: TestType, folder: &Path) -> Result<Option<M
         );
         return Err(field.fault(problem, "name a material measured in the same test"));
     }
+    refuse_other_pressure(table, &field, &material)?;
     Ok(Some(MeasuredReference { file, material }))
 }
+
+/// Refuses a material that was measured under another pressure than that of the test.
+fn refuse_other_pressure(
+    table: &Table<'_>,
+    field: &Field<'_>,
+    material: &MeasuredMaterial,
+) -> Result<()> {
+    let (Some(name), Some(measured_pa)) =
+        (material.test.pressure(), material.dimensions.pressure_pa())
+    else {
+        return Ok(());
+    };
+    let own_pa: Option<f64> = table.read(name)?;
+    match own_pa {
+        Some(own_pa) if (own_pa - measured_pa).abs() > SAME_PRESSURE * measured_pa => {
+            let [own, measured] = [own_pa, measured_pa].map(|value| show_quantity(value, "Pa"));
+            let name = name.replace('_', " ");
+            let problem = format!("was measured under a {name} of {measured}, not {own}");
+            Err(field.fault(problem, "name a material measured under the same"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Largest difference of a measured pressure from that of the test, relative to it.
+const SAME_PRESSURE: f64 = 0.01;
 
 /// Refuses dimensions that do not apply to this type of test.
 fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
     let known = kind.dimensions();
     match table
-        .given(&Dimensions::NAMES)
+        .given(&Dimensions::SIZES)
         .find(|(key, _)| !known.contains(key))
     {
         Some((_, field)) => {

@@ -15,7 +15,7 @@ pub(crate) mod csv_line;
 pub mod curves;
 pub mod design;
 pub mod expand;
-pub mod failure_line;
+mod failure_line;
 pub mod folder;
 pub(crate) mod front;
 pub mod increase_table;

@@ -3,12 +3,12 @@
 use dem_scene::study::Average;
 use serde::Serialize;
 
-use super::failure_line::FailureLine;
 use super::increase_table::IncreaseTable;
 use super::ranking::DesignTable;
 use super::response::Response;
 use super::row::Row;
 use super::search::Search;
+use dem_laboratory::FailureLine;
 
 /// All results of a sweep. SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -7,7 +7,7 @@ use dem_scene::study::{Axis, MeasureOf, RunTime, Study};
 
 use super::chance;
 use super::expand::Run;
-use super::failure_line::FailureLine;
+use super::failure_line::failure_line;
 use super::front::{Point, front};
 use super::increase_table::IncreaseTable;
 use super::judge::{in_words, judge};
@@ -59,8 +59,8 @@ impl SweepTable {
         notes.extend(of_search.unwrap_or_default());
         let (design, of_design) = design_table(study, &rows).unzip();
         notes.extend(of_design.unwrap_or_default());
-        let failure_line = FailureLine::of(study, &rows);
-        notes.extend(failure_line.as_ref().map(FailureLine::note));
+        let failure_line = failure_line(study, &rows);
+        notes.extend(failure_line.as_ref().map(dem_laboratory::FailureLine::note));
         let increase_tables = IncreaseTable::all_of(study, &rows);
         notes.extend(increase_tables.iter().map(IncreaseTable::note));
         Self {

@@ -8,7 +8,7 @@ use crate::sizes::Sizes;
 use clap::Parser;
 use dem_io::{Body, Diagnostic, Result, Surface};
 use dem_terminal::program::on_one_line;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A shape and the settings with which it is packed.
 #[derive(Debug)]
@@ -25,11 +25,24 @@ impl Recipe {
     /// # Errors
     /// Arguments that dem-pack refuses, that only concern its output, or that name no solid.
     pub fn parse(arguments: &[String]) -> Result<Self> {
-        let line = || std::iter::once("dem-pack".to_owned()).chain(arguments.iter().cloned());
-        let parsed = Arguments::try_parse_from(line()).map_err(|error| {
-            let problem = on_one_line(&error.to_string());
-            Diagnostic::input("dem-pack", problem, "see dem-pack --help")
-        })?;
+        Self::of_shape(None, arguments)
+    }
+
+    /// The same with this shape in place of that of the arguments, which may have none.
+    ///
+    /// # Errors
+    /// As [`Self::parse`].
+    pub fn of_shape(other: Option<&Path>, arguments: &[String]) -> Result<Self> {
+        let mut line = arguments.to_vec();
+        if let Some(other) = other
+            && !Self::names_shape(arguments)?
+        {
+            line.insert(0, other.display().to_string());
+        }
+        let mut parsed = parsed(&line).map_err(refused)?;
+        if let Some(other) = other {
+            parsed.pack.stl = Some(other.to_owned());
+        }
         let arguments = parsed.pack;
         let no_output = arguments.output.is_none() && arguments.threads.is_none();
         let (None, true, Some(shape)) = (&parsed.command, no_output, arguments.stl.clone()) else {
@@ -55,6 +68,19 @@ impl Recipe {
         let diameter = recipe.arguments.diameter.as_deref();
         check_unit_of_diameter(diameter, &recipe.settings.packing.sizes, &recipe.surface)?;
         Ok(recipe)
+    }
+
+    /// Whether these arguments of dem-pack name a shape.
+    ///
+    /// # Errors
+    /// Arguments that dem-pack refuses.
+    pub fn names_shape(arguments: &[String]) -> Result<bool> {
+        let with_one = || [&["shape.stl".to_owned()], arguments].concat();
+        match parsed(arguments) {
+            Ok(_) => Ok(true),
+            Err(_) if parsed(&with_one()).is_ok() => Ok(false),
+            Err(error) => Err(refused(error)),
+        }
     }
 
     /// The diameters, as written.
@@ -84,4 +110,16 @@ impl Recipe {
         settings.packing.seed = seed;
         make_body(&self.surface, &settings, progress)
     }
+}
+
+/// A command line of dem-pack, without the name of the program.
+fn parsed(arguments: &[String]) -> std::result::Result<Arguments, clap::Error> {
+    let line = std::iter::once("dem-pack".to_owned()).chain(arguments.iter().cloned());
+    Arguments::try_parse_from(line)
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "it is passed to map_err")]
+fn refused(error: clap::Error) -> Diagnostic {
+    let problem = on_one_line(&error.to_string());
+    Diagnostic::input("dem-pack", problem, "see dem-pack --help")
 }

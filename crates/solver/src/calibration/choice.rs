@@ -14,9 +14,9 @@ use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STRENGTH};
 /// Largest deviation of the mean modulus from its target.
 const MODULUS_TOLERANCE: f64 = 0.01;
 /// The same for the strength and other results.
-const STRENGTH_TOLERANCE: f64 = 0.02;
+pub(super) const STRENGTH_TOLERANCE: f64 = 0.02;
 /// Strengths of bonds, as keys of a scene.
-const STRENGTHS: [&str; 5] = [
+pub(super) const STRENGTHS: [&str; 5] = [
     "von_mises_strength",
     "tensile_strength",
     "shear_strength",
@@ -232,7 +232,10 @@ impl Chooser<'_> {
             (TestType::FourPointBending | TestType::ThreePointBending, _) => {
                 Some((EQ_18, "Pa", modulus?))
             }
-            (TestType::Compression | TestType::Tension, _) => Some((BY_TRAVEL, "Pa", modulus?)),
+            (
+                TestType::Compression | TestType::Tension | TestType::TriaxialCompression,
+                ModulusBy::Travel,
+            ) => Some((BY_TRAVEL, "Pa", modulus?)),
             _ => None,
         }
     }

@@ -61,14 +61,18 @@ impl Prospect {
     /// Refuses a stroke that is too short for a body that meets its targets: shorter than 1.2 times
     /// the travel at failure.
     pub(crate) fn check(&self, scene: &Scene, unknowns: &[Unknown]) -> Result<()> {
+        let targets = unknowns.iter().map(|one| (one.result.as_str(), one.target));
+        self.check_targets(scene, &targets.collect::<Vec<_>>())
+    }
+
+    /// The same for targets by their names.
+    pub(crate) fn check_targets(&self, scene: &Scene, targets: &[(&str, f64)]) -> Result<()> {
         let (Some(specimen), Some(test)) = (&self.specimen, &scene.test) else {
             return Ok(());
         };
         let target = |names: &[&str]| {
-            let found = unknowns
-                .iter()
-                .find(|one| names.contains(&one.result.as_str()));
-            found.map(|one| one.target)
+            let found = targets.iter().find(|(name, _)| names.contains(name));
+            found.map(|(_, target)| *target)
         };
         let stiffness_n_m = target(&[STIFFNESS]).or_else(|| {
             let modulus_pa = target(&[EQ_18, BY_TRAVEL])?;

@@ -2,6 +2,7 @@
 //! wanted results.
 
 mod output_files;
+mod several;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
@@ -43,15 +44,26 @@ const PACKINGS: usize = 4;
 pub(super) struct CalibrateArguments {
     #[command(flatten)]
     scene: SceneArguments,
+    /// Scenes of other tests of the same material: one calibration meets the targets of all
+    #[arg(value_name = "OTHER SCENES")]
+    more: Vec<PathBuf>,
     /// Material file to write, which scenes include; a page (.html) and a record (.json) of the
     /// same name are written with it
     #[arg(long, short, value_name = "FILE", default_value = "calibrated.toml")]
     output: PathBuf,
     /// Number to vary: modulus, strength (all strengths of the bonds by one factor), one strength
     /// such as shear_strength, or PATH=MEASURE:VALUE for another number of the scene and a measure
-    /// or test result (SI units) that it determines; modulus and strength unless given
+    /// or test result (SI units) that it determines; modulus and strength unless given. With several
+    /// scenes also friction_angle, and PATH alone
     #[arg(long, value_name = "NUMBER")]
     free: Vec<String>,
+    /// With several scenes: STL file of a scene's body, in place of that after --
+    #[arg(long, value_name = "SCENE=FILE", requires_all = ["pack", "more"])]
+    shape: Vec<String>,
+    /// With several scenes: a further result that a scene has to give, such as
+    /// "shear.toml=residual strength:80 kPa"; without a value that of its measured file
+    #[arg(long, value_name = "SCENE=RESULT:VALUE", requires = "more")]
+    target: Vec<String>,
     /// Modulus to meet: from the travel, as test rigs measure it, or from the specimen's own
     /// deformation
     #[arg(long, value_enum, default_value = "travel")]
@@ -84,6 +96,9 @@ pub(super) struct CalibrateArguments {
 /// Calibrates, writes material, page and record, and prints a summary. Targets that are not met are
 /// an error, once page and record are written.
 pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> Result<()> {
+    if !options.more.is_empty() {
+        return several::calibrate_several(options, interrupt);
+    }
     let most_error = options.max_error.as_deref().map(fraction).transpose()?;
     let source = options.scene.place();
     let Some(file) = options.scene.file.as_deref() else {

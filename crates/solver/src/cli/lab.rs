@@ -3,12 +3,15 @@
 
 mod drop_weight;
 
+mod pressures;
+
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dem_io::safe_write::write_file;
 use dem_io::text::visible;
-use dem_io::units::{AREA, LENGTH, quantity, show_quantity};
+use dem_io::units::{quantity, show_quantity};
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::{
@@ -28,7 +31,7 @@ pub(super) struct LabArguments {
     #[arg(value_name = "FILE", required_unless_present = "specimens")]
     files: Vec<PathBuf>,
     /// Type of test: four-point-bending, three-point-bending, brazilian-disc, compression, tension,
-    /// dog-bone, drop-weight
+    /// dog-bone, triaxial-compression, direct-shear, drop-weight
     #[arg(long = "type", value_name = "TYPE")]
     test: String,
     /// File to write, measured.json unless given, or ore.toml of drop-weight; a page of the same
@@ -58,6 +61,12 @@ pub(super) struct LabArguments {
     /// Area of its section, such as 9cm2
     #[arg(long, value_name = "AREA", help_heading = "Specimens")]
     area: Option<String>,
+    /// Pressure on the sides of a triaxial test, such as 1MPa
+    #[arg(long, value_name = "STRESS", help_heading = "Specimens")]
+    confining_pressure: Option<String>,
+    /// Stress on the plane of a direct shear test, such as 100kPa
+    #[arg(long, value_name = "STRESS", help_heading = "Specimens")]
+    normal_stress: Option<String>,
     /// Table of specimens with their own dimensions and cracks, as CSV: columns file, width (mm),
     /// ..., crack_offset (mm); empty cells are those of the options
     #[arg(
@@ -112,6 +121,10 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
         .iter()
         .map(|one| arguments.measured(one, test, &dimensions))
         .collect::<Result<_>>()?;
+    if test.has_residual() {
+        let specimens = listed.iter().zip(measured).collect();
+        return pressures::lab_under_pressure(arguments, test, &dimensions, specimens, page_file);
+    }
     // Curves are scaled to the dimensions of the options, or else to those of the first specimen.
     let first = listed
         .first()
@@ -153,6 +166,11 @@ fn fit_ore(arguments: &LabArguments) -> Result<()> {
         ("--height", arguments.height.is_some()),
         ("--length", arguments.length.is_some()),
         ("--area", arguments.area.is_some()),
+        ("--normal-stress", arguments.normal_stress.is_some()),
+        (
+            "--confining-pressure",
+            arguments.confining_pressure.is_some(),
+        ),
         ("--travel-column", arguments.travel_column.is_some()),
         ("--travel-unit", arguments.travel_unit.is_some()),
         ("--force-column", arguments.force_column.is_some()),
@@ -176,10 +194,9 @@ fn fit_ore(arguments: &LabArguments) -> Result<()> {
 
 impl LabArguments {
     fn test_type(&self) -> Result<TestType> {
-        // A curve of force over travel gives neither the pressure nor the plane of the others.
         let mut known = TestType::NAMES
             .iter()
-            .filter(|(_, test)| !test.is_dynamic() && !test.has_residual());
+            .filter(|(_, test)| !test.is_dynamic());
         let found = known.clone().find(|(name, _)| *name == self.test);
         found.map(|(_, test)| *test).ok_or_else(|| {
             let names = known.by_ref().map(|(name, _)| *name);
@@ -205,8 +222,10 @@ impl LabArguments {
             ("height", &self.height),
             ("length", &self.length),
             ("area", &self.area),
+            ("confining_pressure", &self.confining_pressure),
+            ("normal_stress", &self.normal_stress),
         ] {
-            let dimension = if name == "area" { &AREA } else { &LENGTH };
+            let dimension = Dimensions::unit_of(name).0;
             if let Some(text) = text {
                 let option = format!("--{}", name.replace('_', "-"));
                 let value = quantity(text, dimension).map_err(|error| error.within(&option))?;
@@ -243,7 +262,12 @@ impl LabArguments {
         let name = listed.file.display().to_string();
         let specimen = Specimen::new(test, &listed.dimensions.or(dimensions))?;
         let text = read_text(&listed.file)?;
-        let curve = Table::of(&text).and_then(|table| Curve::of(&table, &travel, &force));
+        let curve = Table::of(&text).and_then(|table| match specimen {
+            Specimen::Bar { area_m2, .. } if test.has_residual() => {
+                Curve::of_stress(&table, &travel, &force, area_m2)
+            }
+            _ => Curve::of(&table, &travel, &force),
+        });
         Ok(MeasuredSpecimen {
             curve: curve.map_err(|error| error.within(&name))?,
             crack_m: listed.crack_m,
@@ -279,6 +303,7 @@ fn summary(found: &MeasuredMaterial, evaluated: &[EvaluatedSpecimen]) -> serde_j
                 "file": one.measured.name,
                 "young_modulus_pa": one.young_modulus_pa,
                 "strength_pa": one.strength_pa,
+                "residual_pa": one.residual_pa,
                 "failure_force_n": regions.largest_n,
                 "travel_at_failure_m": one.travel_at_failure_m,
                 "stiffness_n_m": regions.stiffness_n_m,
@@ -301,21 +326,7 @@ fn print(
     page_file: &Path,
 ) -> Result<()> {
     write_standard_output(|out| {
-        for one in evaluated {
-            for note in &one.all_notes() {
-                writeln!(out, "note         {}: {note}", visible(&one.measured.name))?;
-            }
-            if !one.doubts.is_empty() {
-                writeln!(out, "left out     {}", visible(&doubts_of(one)))?;
-            }
-        }
-        let count = found.specimens.len();
-        writeln!(out, "specimens    {count} of {} valid", evaluated.len())?;
-        for (name, unit, value) in statistics(found) {
-            let mean = show_quantity(value.mean, unit);
-            let scatter = show_quantity(value.standard_deviation, unit);
-            writeln!(out, "{name:27}  {mean}, standard deviation {scatter}")?;
-        }
+        print_series(out, Some(found), evaluated)?;
         let [output, page_file] = [output, page_file].map(|path| path.display().to_string());
         writeln!(
             out,
@@ -324,4 +335,28 @@ fn print(
             visible(&page_file)
         )
     })
+}
+
+/// Prints what is said of the specimens, and the statistics of their material.
+fn print_series(
+    out: &mut dyn Write,
+    found: Option<&MeasuredMaterial>,
+    evaluated: &[EvaluatedSpecimen],
+) -> std::io::Result<()> {
+    for one in evaluated {
+        for note in &one.all_notes() {
+            writeln!(out, "note         {}: {note}", visible(&one.measured.name))?;
+        }
+        if !one.doubts.is_empty() {
+            writeln!(out, "left out     {}", visible(&doubts_of(one)))?;
+        }
+    }
+    let count = found.map_or(0, |found| found.specimens.len());
+    writeln!(out, "specimens    {count} of {} valid", evaluated.len())?;
+    for (name, unit, value) in found.map(statistics).unwrap_or_default() {
+        let mean = show_quantity(value.mean, unit);
+        let scatter = show_quantity(value.standard_deviation, unit);
+        writeln!(out, "{name:27}  {mean}, standard deviation {scatter}")?;
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Confidence intervals of means.
 
-use dem_laboratory::{Statistic, student_95};
+use crate::statistic::Statistic;
+use crate::student::student_95;
 
 /// Half the width of the 95 % confidence interval of a mean, in its unit. None for a single value.
 pub fn half_width(statistic: &Statistic) -> Option<f64> {

@@ -1,0 +1,271 @@
+//! The result of a calibration by several tests in words.
+
+use dem_io::units::{show_length, show_quantity, significant};
+use dem_laboratory::{FailureLine, TestType};
+
+use super::Joint;
+use crate::case::End;
+use crate::text::{RATE_MATTERS, change_text, line, prediction};
+use crate::unknown::Number;
+use dem_laboratory::half_width;
+
+/// The result for a terminal: some lines for each test, the numbers, cost and warnings.
+pub fn joint_report(joint: &Joint) -> String {
+    let mut text = String::new();
+    for (at, test) in joint.tests.iter().enumerate() {
+        line(&mut text, "test", &test.scene);
+        for row in results(joint, at) {
+            let [name, mean, interval, target, off, scatter] = row;
+            let value = match scatter.as_str() {
+                "" => format!("{mean}, target {target}, {off}"),
+                _ => format!(
+                    "{mean} ({interval}), target {target}, {off}, scatter of packings {scatter}"
+                ),
+            };
+            line(&mut text, &name, &value);
+        }
+        for (name, value) in more(joint, at) {
+            line(&mut text, name, &value);
+        }
+    }
+    for sentence in failure_lines(joint) {
+        line(&mut text, "failure line", &sentence);
+    }
+    for [path, new, old] in numbers(joint) {
+        line(&mut text, &path, &format!("{new} (scenes: {old})"));
+    }
+    let (wall_s, tests) = joint.cost();
+    let rounds = joint.rounds.len();
+    let mut cost = format!(
+        "{tests} tests in {rounds} rounds, {} s",
+        significant(wall_s, 3)
+    );
+    if let Some(start) = joint.start.as_ref().filter(|start| start.tests > 0) {
+        let wall_s = significant(start.wall_s, 3);
+        let tests = start.tests;
+        cost.push_str(&format!(
+            "; {tests} tests without steps before them, {wall_s} s"
+        ));
+    }
+    line(&mut text, "cost", &cost);
+    for warning in warnings(joint) {
+        line(&mut text, "warning", &warning);
+    }
+    text
+}
+
+/// For each result of a test: name, mean, 95 % confidence interval, target, deviation of the mean
+/// from it, scatter.
+pub(super) fn results(joint: &Joint, test: usize) -> Vec<[String; 6]> {
+    let Some(round) = joint.result() else {
+        return Vec::new();
+    };
+    let aims = joint.aims.iter().enumerate();
+    let row = |(at, aim): (usize, &super::Aim)| {
+        let show = |value: f64| show_quantity(value, &aim.unit);
+        let Some(statistic) = joint.statistic(round, at) else {
+            let missing = "not of all packings".to_owned();
+            let empty = String::new;
+            let target = show(aim.target);
+            return [
+                aim.result.clone(),
+                missing,
+                empty(),
+                target,
+                empty(),
+                empty(),
+            ];
+        };
+        let half = half_width(&statistic);
+        let interval = half.map_or_else(String::new, |half| {
+            let [low, high] = [statistic.mean - half, statistic.mean + half].map(show);
+            format!("{low} to {high}")
+        });
+        [
+            aim.result.clone(),
+            show(statistic.mean),
+            interval,
+            show(aim.target),
+            format!("{:+.1} %", 100.0 * (statistic.mean / aim.target - 1.0)),
+            match statistic.count {
+                1 => String::new(),
+                _ => format!(
+                    "{:.1} %",
+                    100.0 * statistic.standard_deviation / statistic.mean
+                ),
+            },
+        ]
+    };
+    aims.filter(|(_, aim)| aim.test == test).map(row).collect()
+}
+
+/// What other packings of the body of a test give, and what half the rate changes.
+fn more(joint: &Joint, test: usize) -> Vec<(&'static str, String)> {
+    let Some(round) = joint.result() else {
+        return Vec::new();
+    };
+    let aims = || {
+        let all = joint.aims.iter().enumerate();
+        all.filter(|(_, aim)| aim.test == test)
+    };
+    let others: Vec<String> = aims()
+        .filter_map(|(at, aim)| prediction(&aim.result, &joint.statistic(round, at)?))
+        .collect();
+    let rates: Vec<String> = aims()
+        .filter_map(|(at, aim)| {
+            let change = joint.rate_change(at)?;
+            Some(format!("{} {}", aim.result, change_text(&change)))
+        })
+        .collect();
+    let count = joint.tests[test].packings.len();
+    let mut found = Vec::new();
+    if !others.is_empty() {
+        let means = others.join(", ");
+        found.push((
+            "others",
+            format!("mean of {count} other packings, 95 %: {means}"),
+        ));
+    }
+    if !rates.is_empty() {
+        found.push(("half rate", rates.join(", ")));
+    }
+    found
+}
+
+/// Cohesion and friction angle of the peaks of each type of test under pressure, and of their
+/// targets, a sentence each.
+pub(super) fn failure_lines(joint: &Joint) -> Vec<String> {
+    let Some(round) = joint.result() else {
+        return Vec::new();
+    };
+    let of = |line: &FailureLine| {
+        format!(
+            "cohesion {} and friction angle {} degrees",
+            show_quantity(line.cohesion_pa, "Pa"),
+            significant(line.friction_angle_deg, 4)
+        )
+    };
+    let kinds = [TestType::TriaxialCompression, TestType::DirectShear];
+    let sentence = |kind: TestType| {
+        let [targets, means] = joint.failure_lines(round, kind)?;
+        let (name, peaks) = (kind.name(), means.peaks);
+        Some(format!(
+            "{name}, {peaks} strengths: {} (targets: {})",
+            of(&means),
+            of(&targets)
+        ))
+    };
+    kinds.into_iter().filter_map(sentence).collect()
+}
+
+/// Path, new and old value of each number.
+pub(super) fn numbers(joint: &Joint) -> Vec<[String; 3]> {
+    let Some(round) = joint.result() else {
+        return Vec::new();
+    };
+    let all = joint.unknowns.iter().zip(&round.factors);
+    all.flat_map(|(unknown, factor)| {
+        let of = |number: &Number| [number.path.clone(), number.text(*factor), number.text(1.0)];
+        unknown.numbers.iter().map(of).collect::<Vec<_>>()
+    })
+    .collect()
+}
+
+/// Reasons to doubt the result, a sentence each.
+pub(super) fn warnings(joint: &Joint) -> Vec<String> {
+    let mut warnings = Vec::new();
+    match &joint.end {
+        Some((_, End::WithinScatter)) => warnings.push(
+            "not all means are within their tolerances, but each target is within the 95 % confidence interval of its mean: more packings would tell"
+                .to_owned(),
+        ),
+        Some((_, End::NotMet(problem, remedy))) => warnings.push(format!("{problem}; {remedy}")),
+        _ => {}
+    }
+    let Some(round) = joint.result() else {
+        return warnings;
+    };
+    for (at, test) in joint.tests.iter().enumerate() {
+        let named = test.packings.iter().zip(&round.trials[joint.trials_of(at)]);
+        let doubts: Vec<String> = named
+            .filter_map(|(name, trial)| Some((name, trial.as_ref()?)))
+            .flat_map(|(name, trial)| {
+                let doubts = trial.doubts.iter();
+                doubts.map(move |doubt| format!("{name}: {doubt}"))
+            })
+            .collect();
+        let scene = &test.scene;
+        if !doubts.is_empty() {
+            warnings.push(format!("{scene}: in doubt: {}", doubts.join("; ")));
+        }
+        if test.packings.len() == 1 {
+            warnings.push(format!(
+                "{scene}: there is one packing only: the scatter of others is not known"
+            ));
+        }
+    }
+    if let Some(problem) = &joint.rate_problem {
+        warnings.push(format!("a test at twice the rate failed: {problem}"));
+    }
+    for (at, aim) in joint.aims.iter().enumerate() {
+        let Some(change) = joint.rate_change(at) else {
+            continue;
+        };
+        // Below its own scatter a change says nothing.
+        let least = half_width(&change).unwrap_or(0.0).max(RATE_MATTERS);
+        if change.mean.abs() > least {
+            warnings.push(format!(
+                "{}: half the rate changes the {} by {}: raise test.periods",
+                joint.tests[aim.test].scene,
+                aim.result,
+                change_text(&change)
+            ));
+        }
+    }
+    warnings
+}
+
+/// The origin of the numbers, as comments of a material file: every test with its packings, and
+/// what each of its results is in the end.
+pub fn joint_origin(joint: &Joint) -> String {
+    let mut lines = Vec::new();
+    if let Some((problem, _)) = joint.problem() {
+        lines.push(format!("NOT CALIBRATED: {problem}."));
+    }
+    lines.push(format!(
+        "Calibrated on {} by {} with {} tests at once.",
+        joint.date,
+        joint.program,
+        joint.tests.len()
+    ));
+    for (at, test) in joint.tests.iter().enumerate() {
+        lines.push(format!("Test: {}, {}.", test.scene, test.kind.name()));
+        let packings = test.packings.join(", ");
+        lines.push(match test.packed_with.as_str() {
+            "" => format!("Packings: {packings}."),
+            pack => format!("Packings: {packings}, of dem-pack {pack}."),
+        });
+        lines.push(format!(
+            "Spheres: {} in the mean, {} across the body.",
+            show_length(test.mean_diameter_m),
+            significant(test.spheres_across, 3)
+        ));
+        for [name, mean, interval, target, off, scatter] in results(joint, at) {
+            lines.push(match (off.as_str(), scatter.as_str()) {
+                ("", _) => format!("{name}: {mean}, target {target}"),
+                (_, "") => format!("{name}: {mean}, target {target}, {off}"),
+                _ => format!(
+                    "{name}: mean {mean}, 95 % confidence interval {interval}, target {target}, {off}, scatter of packings {scatter}"
+                ),
+            });
+        }
+        let more = more(joint, at).into_iter();
+        lines.extend(more.map(|(name, text)| format!("{name}: {text}")));
+    }
+    lines.extend(failure_lines(joint));
+    for [path, new, old] in numbers(joint) {
+        lines.push(format!("{path}: {new}, in the scenes {old}"));
+    }
+    let visible = |line: &String| format!("# {}\n", dem_io::text::visible(line));
+    lines.iter().map(visible).collect()
+}
