@@ -1,7 +1,6 @@
 //! Feeds by a sieve curve: `sizes` of an inlet stands for bodies of several sizes.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use super::body::BodyEntry;
 use super::inlet::{Inlet, SharesBy};
@@ -10,15 +9,6 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::sieve_curve::SieveCurve;
 use dem_io::units::significant;
-
-/// The sieve curve of a feed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FeedSizes {
-    /// Its file, resolved against the folder of the scene.
-    pub file: PathBuf,
-    /// Its openings and what passes them.
-    pub curve: SieveCurve,
-}
 
 /// A class of a sieve curve.
 struct SizeClass {

@@ -1,10 +1,9 @@
 //! `[inlets.NAME]`
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::body::BodyEntry;
-use super::feed_sizes::FeedSizes;
 use super::field::Field;
 use super::listing::Listing;
 use super::numbers::number;
@@ -15,7 +14,7 @@ use super::schema::{Kind, Word, table_schema, words_of};
 use super::table::Table;
 use super::tree::Value;
 use dem_io::diagnostic::Result;
-use dem_io::sieve_curve;
+use dem_io::sieve_curve::{self, SieveCurve};
 use dem_io::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
 
 /// Orientation of new bodies; true for random.
@@ -94,6 +93,15 @@ impl Inlet {
     pub fn feeds(&self, body: &str) -> bool {
         self.bodies.iter().any(|(name, _)| name == body)
     }
+}
+
+/// The sieve curve of a feed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeedSizes {
+    /// Its file, resolved against the folder of the scene.
+    pub file: PathBuf,
+    /// Its openings and what passes them.
+    pub curve: SieveCurve,
 }
 
 /// What the proportions of an inlet's bodies are of.

@@ -2,7 +2,7 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use super::breakage;
+use super::breakage_law;
 use super::field::Field;
 use super::listing::Listing;
 use super::schema::{Key, table_schema};
@@ -53,7 +53,7 @@ table_schema! {
     /// The material does not deform; for walls only, and instead of all other keys.
     flag("rigid", false);
     /// How particles break by the energy that they take in, for `[replacement.NAME.breakage]`.
-    table("breakage", &breakage::LAW).otherwise("no law");
+    table("breakage", &breakage_law::LAW).otherwise("no law");
 }
 
 impl Key {
@@ -92,7 +92,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<Material> {
         young_modulus_pa,
         poisson_ratio,
         rigid,
-        breakage: table.read_by("breakage", |field| breakage::law(&field))?,
+        breakage: table.read_by("breakage", |field| breakage_law::read(&field))?,
     })
 }
 
@@ -104,8 +104,8 @@ pub(super) fn list(material: &Material, listing: &mut Listing) {
     listing.value("young_modulus", &material.young_modulus_pa);
     listing.value("poisson_ratio", &material.poisson_ratio);
     if let Some(law) = &material.breakage {
-        listing.table("breakage", &breakage::LAW, |listing| {
-            breakage::list_law(law, listing);
+        listing.table("breakage", &breakage_law::LAW, |listing| {
+            breakage_law::list(law, listing);
         });
     }
 }

@@ -3,8 +3,7 @@
 use super::contents::{
     Axis, AxisValue, Design, DesignKind, DesignRange, Reference, Study, StudyMeasure,
 };
-use super::keys::{DESIGN_KINDS, DESIGN_RANGE, SPACINGS};
-use super::read::SEED;
+use super::keys::{DESIGN_KINDS, DESIGN_RANGE, SEED, SPACINGS};
 use super::values::{in_si, named, point, rounded, setting};
 use crate::field::Field;
 use crate::include::document_of;

@@ -120,6 +120,9 @@ table_schema! {
     new("base", ANYTHING).otherwise("that of the scene");
 }
 
+/// Axis over which responses are averaged unless another one is given.
+pub(super) const SEED: &str = "run.seed";
+
 /// Designs; true for trajectories.
 pub(super) const DESIGN_KINDS: [(&str, bool); 2] = [("one-at-a-time", false), ("morris", true)];
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::contents::{Axis, Combine, Design, Find, STUDY_VERSION, Setting, Study, StudyMeasure};
 use super::design;
 use super::find;
-use super::keys::{DESIGN, FIND, MOST_REPEATS, PAGE, STUDY};
+use super::keys::{DESIGN, FIND, MOST_REPEATS, PAGE, SEED, STUDY};
 use super::measures::{axis_named, measure};
 use super::values::{self, MOST_VALUES, tidy};
 use crate::field::Field;
@@ -18,8 +18,6 @@ use dem_io::diagnostic::{Diagnostic, Result};
 const MOST_AXES: usize = 100;
 /// Largest number of cases of a search.
 const MOST_CASES: u64 = 10_000;
-/// Axis over which responses are averaged unless another one is given.
-pub(super) const SEED: &str = "run.seed";
 
 /// Reads a study from a TOML file.
 pub fn read_study(path: &Path) -> Result<Study> {
