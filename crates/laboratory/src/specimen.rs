@@ -259,55 +259,7 @@ impl Specimen {
     /// # Errors
     /// A dimension missing, of another test, or not positive; loading pins not within the supports.
     pub fn new(test: TestType, dimensions: &Dimensions) -> Result<Self> {
-        let names: Vec<&str> = test
-            .dimensions()
-            .iter()
-            .copied()
-            .chain(test.pressure())
-            .collect();
-        // The force on a shear plane does not depend on the length of the body.
-        let is_needed = |name: &str| {
-            names.contains(&name) && !(test == TestType::DirectShear && name == "length")
-        };
-        for name in Dimensions::NAMES {
-            let option = name.replace('_', "-");
-            match dimensions.get(name) {
-                Some(_) if !names.contains(&name) => {
-                    let problem = format!(
-                        "the {} does not apply to {}",
-                        name.replace('_', " "),
-                        test.name()
-                    );
-                    return Err(Diagnostic::input(
-                        "",
-                        problem,
-                        format!("leave out --{option}"),
-                    ));
-                }
-                Some(value) if !(value > 0.0 && value.is_finite()) => {
-                    let problem = format!("the {} is {value}, not above 0", name.replace('_', " "));
-                    return Err(Diagnostic::input(
-                        "",
-                        problem,
-                        format!("correct --{option}"),
-                    ));
-                }
-                None if is_needed(name) => {
-                    let problem = format!("{} needs the {}", test.name(), name.replace('_', " "));
-                    let example = match Dimensions::unit_of(name).1 {
-                        "m2" => "9cm2",
-                        "Pa" => "100kPa",
-                        _ => "30mm",
-                    };
-                    return Err(Diagnostic::input(
-                        "",
-                        problem,
-                        format!("add --{option} {example}"),
-                    ));
-                }
-                _ => {}
-            }
-        }
+        refuse_dimensions(test, dimensions)?;
         let size = |name: &str| dimensions.get(name).unwrap_or(0.0);
         let beam = Beam {
             span_m: size("support_span"),
@@ -390,4 +342,57 @@ impl Specimen {
             _ => None,
         }
     }
+}
+
+/// Refuses a dimension that is missing, of another test, or not positive.
+fn refuse_dimensions(test: TestType, dimensions: &Dimensions) -> Result<()> {
+    let names: Vec<&str> = test
+        .dimensions()
+        .iter()
+        .copied()
+        .chain(test.pressure())
+        .collect();
+    // The force on a shear plane does not depend on the length of the body.
+    let is_needed =
+        |name: &str| names.contains(&name) && !(test == TestType::DirectShear && name == "length");
+    for name in Dimensions::NAMES {
+        let option = name.replace('_', "-");
+        match dimensions.get(name) {
+            Some(_) if !names.contains(&name) => {
+                let problem = format!(
+                    "the {} does not apply to {}",
+                    name.replace('_', " "),
+                    test.name()
+                );
+                return Err(Diagnostic::input(
+                    "",
+                    problem,
+                    format!("leave out --{option}"),
+                ));
+            }
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                let problem = format!("the {} is {value}, not above 0", name.replace('_', " "));
+                return Err(Diagnostic::input(
+                    "",
+                    problem,
+                    format!("correct --{option}"),
+                ));
+            }
+            None if is_needed(name) => {
+                let problem = format!("{} needs the {}", test.name(), name.replace('_', " "));
+                let example = match Dimensions::unit_of(name).1 {
+                    "m2" => "9cm2",
+                    "Pa" => "100kPa",
+                    _ => "30mm",
+                };
+                return Err(Diagnostic::input(
+                    "",
+                    problem,
+                    format!("add --{option} {example}"),
+                ));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }

@@ -243,7 +243,7 @@ fn apart(joint: &Joint, slopes: &DMatrix<f64>, round: &Round) -> (String, String
     if least_left(joint, slopes) > LEFT {
         return (
             format!("the targets contradict each other; the nearest numbers leave {all}"),
-            "free another number that moves some of them and not others (--free), or correct a target"
+            "free another number that moves some of them and not others (--free), correct a target, or take more packings, whose means scatter less"
                 .to_owned(),
         );
     }
