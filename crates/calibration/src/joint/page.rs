@@ -3,7 +3,7 @@
 use dem_io::units::{show_quantity, significant};
 use dem_plots::{Line, MOST_LINES, Page, Plot, Row, Table};
 
-use super::Joint;
+use super::state::Joint;
 use super::text::{failure_lines, numbers, results, warnings};
 use crate::case::Round;
 use crate::page::{columns, table};

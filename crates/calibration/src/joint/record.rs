@@ -5,7 +5,7 @@ use std::path::Path;
 use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result, read_input};
 
-use super::Joint;
+use super::state::Joint;
 use crate::case::{Round, Trial};
 
 /// Version of the format of [`Joint`].

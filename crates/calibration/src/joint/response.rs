@@ -4,7 +4,7 @@
 use dem_laboratory::Statistic;
 use nalgebra::{DMatrix, DVector};
 
-use super::Joint;
+use super::state::Joint;
 use crate::case::{Round, Trial};
 
 /// Change of the logarithm of a factor in a probe.

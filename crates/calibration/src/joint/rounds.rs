@@ -3,8 +3,8 @@
 
 use dem_io::Result;
 
-use super::Joint;
 use super::search::next_of_joint;
+use super::state::Joint;
 use crate::case::{Round, Trial};
 use crate::rounds::{TestFunction, do_round};
 use crate::search::Step;

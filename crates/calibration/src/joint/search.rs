@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::response::{PROBE, base, has_all, main_rounds, probed, response};
 use super::squares::weighted_step;
-use super::{Aim, Joint};
+use super::state::{Aim, Joint};
 use crate::case::{End, Round, Trial};
 use crate::search::{FLAT, FURTHEST, FURTHEST_WITHIN_SCATTER, MUCH_WEAKER, Step};
 use dem_laboratory::half_width;
@@ -43,9 +43,8 @@ pub fn next_of_joint(joint: &Joint) -> Step {
     let main = main_rounds(joint);
     let counted = main.iter().filter(|round| has_all(joint, round)).count();
     let most = ROUNDS[0] + ROUNDS[1] * joint.unknowns.len();
-    let goes_on = counted < most
-        && main.len() < MOST_ROUNDS_AT_ALL
-        && !(counted >= FEWEST_ROUNDS && least_left(joint, &slopes) > HARDLY_LESS);
+    let is_at_best = counted >= FEWEST_ROUNDS && least_left(joint, &slopes) > HARDLY_LESS;
+    let goes_on = counted < most && main.len() < MOST_ROUNDS_AT_ALL && !is_at_best;
     let factors = proposed(joint, &slopes, &main);
     let is_tried = |round: &&Round| {
         let pairs = round.factors.iter().zip(&factors);
@@ -82,8 +81,12 @@ fn best(joint: &Joint) -> usize {
 }
 
 /// Sum of squares that the best step from the best round leaves, over that of this round. 0: there
-/// is no such round.
+/// is no such round, or there are as many unknowns as targets, which can all be met as far as the
+/// slopes are right.
 fn least_left(joint: &Joint, slopes: &DMatrix<f64>) -> f64 {
+    if joint.aims.len() == joint.unknowns.len() {
+        return 0.0;
+    }
     let round = &joint.rounds[best(joint)];
     let wanted: Option<Vec<f64>> = (0..joint.aims.len())
         .map(|at| joint.wanted(round, at))
@@ -144,13 +147,8 @@ fn step_from(joint: &Joint, slopes: &DMatrix<f64>, round: &Round) -> Vec<f64> {
     let wanted: Vec<f64> = known.iter().map(|(_, wanted)| *wanted).collect();
     let tolerances: Vec<f64> = rows.iter().map(|at| joint.aims[*at].tolerance).collect();
     let step = weighted_step(&slopes.select_rows(&rows), &wanted, &tolerances);
-    let longest = step.amax();
-    let scale = if longest > LONGEST {
-        LONGEST / longest
-    } else {
-        1.0
-    };
-    step.iter().map(|step| scale * step).collect()
+    let limited = step.iter().map(|step| step.clamp(-LONGEST, LONGEST));
+    limited.collect()
 }
 
 /// Wanted change of the logarithm of a result that not all packings have, as they are too strong.
@@ -245,7 +243,7 @@ fn apart(joint: &Joint, slopes: &DMatrix<f64>, round: &Round) -> (String, String
     if least_left(joint, slopes) > LEFT {
         return (
             format!("the targets contradict each other; the nearest numbers leave {all}"),
-            "free another number that moves some of them and not others (--free), or correct a target"
+            "free another number that moves some of them and not others (--free), correct a target, or take more packings, whose means scatter less"
                 .to_owned(),
         );
     }

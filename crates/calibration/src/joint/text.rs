@@ -3,7 +3,7 @@
 use dem_io::units::{show_length, show_quantity, significant};
 use dem_laboratory::{FailureLine, TestType};
 
-use super::Joint;
+use super::state::{Aim, Joint};
 use crate::case::End;
 use crate::text::{RATE_MATTERS, change_text, line, prediction};
 use crate::unknown::Number;
@@ -61,7 +61,7 @@ pub(super) fn results(joint: &Joint, test: usize) -> Vec<[String; 6]> {
         return Vec::new();
     };
     let aims = joint.aims.iter().enumerate();
-    let row = |(at, aim): (usize, &super::Aim)| {
+    let row = |(at, aim): (usize, &Aim)| {
         let show = |value: f64| show_quantity(value, &aim.unit);
         let Some(statistic) = joint.statistic(round, at) else {
             let missing = "not of all packings".to_owned();

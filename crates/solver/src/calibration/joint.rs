@@ -9,7 +9,7 @@ use dem_laboratory::TestType;
 use dem_laboratory::test_result::STIFFNESS;
 use dem_rig::confined::RESIDUAL;
 use dem_rig::dynamic::DYNAMIC_RESULTS;
-use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STRENGTH};
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS};
 use dem_scene::{BondKind, Scene, Test, material_text, set_text, written_value};
 
 use super::choice::{ModulusBy, STRENGTH_TOLERANCE, STRENGTHS, SceneText, unknowns};
@@ -287,10 +287,9 @@ pub(crate) fn aims(
         aims.extend(named.iter().filter(|aim| aim.test == at).cloned());
     }
     for aim in &mut aims {
-        let test = &tests[aim.test];
-        let of = |unknown: &Free| slope(test, &aim.result, unknown);
+        let of = |unknown: &Free| slope(&aim.result, unknown, unknowns);
         aim.slopes = unknowns.iter().map(of).collect();
-        refuse_unmoved(test, aim)?;
+        refuse_unmoved(&tests[aim.test], aim)?;
     }
     if aims.len() < unknowns.len() {
         let problem = format!(
@@ -398,9 +397,4 @@ fn named_aim(tests: &[TestScene], text: &str) -> Result<Aim> {
         tolerance: STRENGTH_TOLERANCE,
         slopes: Vec::new(),
     })
-}
-
-/// Whether a result is a strength.
-pub(super) fn is_strength(result: &str) -> bool {
-    result == STRENGTH || result == dem_laboratory::theory::PEAK_AXIAL_STRESS
 }

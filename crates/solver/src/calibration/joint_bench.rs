@@ -13,6 +13,7 @@ use dem_rig::evaluate::STRENGTH;
 use super::bench::Bench;
 use super::choice::{ModulusBy, unknowns};
 use super::joint::TestScene;
+use super::slopes::{is_bond_modulus, is_failure};
 use super::start::Beginning;
 
 /// The bodies of a test.
@@ -133,7 +134,7 @@ impl JointBench<'_> {
         let mut found: Vec<OfTest> = Vec::new();
         found.resize_with(self.tests.len(), OfTest::default);
         let mut solutions = 0;
-        let modulus = self.unknowns.iter().position(is_modulus);
+        let modulus = self.unknowns.iter().position(is_bond_modulus);
         // A test without a modulus takes that of the others.
         for has_modulus in [true, false] {
             for at in 0..self.tests.len() {
@@ -200,7 +201,7 @@ impl JointBench<'_> {
     /// The first factor on strengths: the mean over the tests that fail by them, or over all.
     fn strength_factor(&self, unknown: &Free, found: &[OfTest]) -> Option<f64> {
         let path = &unknown.numbers[0].path;
-        if !path.contains(".failure.") || path.ends_with(".friction_angle") {
+        if !is_failure(unknown) || path.ends_with(".friction_angle") {
             return None;
         }
         let tears = ["tensile_strength", "von_mises_strength"];
@@ -217,12 +218,6 @@ impl JointBench<'_> {
         };
         of(true).or_else(|| of(false))
     }
-}
-
-/// Whether an unknown is the modulus of bonds.
-fn is_modulus(unknown: &Free) -> bool {
-    let path = &unknown.numbers[0].path;
-    path.starts_with("bonds.") && path.ends_with(".young_modulus")
 }
 
 /// None: there are no values.

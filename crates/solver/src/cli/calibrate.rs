@@ -1,16 +1,16 @@
 //! `dem-run calibrate`: numbers of a scene with which the mean test of several packings gives the
 //! wanted results.
 
+mod arguments;
 mod output_files;
 mod several;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use clap::Args;
 use dem_calibration::{
     Case, End, FORMAT_VERSION, Record, Unknown, calibrate as search, check_rate, page, read_record,
     report, write_record,
@@ -21,77 +21,19 @@ use dem_io::safe_write::write_file;
 use dem_io::text::visible;
 use dem_io::units::{show_length, significant};
 use dem_io::{Body, Diagnostic, Result};
-use dem_pack::cli::Recipe;
 use dem_scene::{Scene, Test, material_text, scene_from_text, text_of};
 use dem_terminal::program::today;
-use dem_terminal::progress::{ProgressBar, progress_bar};
+use dem_terminal::progress::ProgressBar;
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 
+pub(super) use self::arguments::CalibrateArguments;
+use self::arguments::PACKINGS;
 use self::output_files::{OutputFiles, not_met};
 use super::packings::{Packings, smallest_extent_m};
 use super::pool::in_pool;
 use super::progress::LogOfTests;
-use super::scene_arguments::SceneArguments;
-use crate::calibration::{
-    Beginning, Bench, ModulusBy, Prospect, SceneText, pace, prospect, unknowns,
-};
+use crate::calibration::{Beginning, Bench, Prospect, SceneText, pace, prospect, unknowns};
 use crate::interrupt::Interrupt;
-
-/// Packings of a shape, unless given.
-const PACKINGS: usize = 4;
-
-#[derive(Debug, Args)]
-pub(super) struct CalibrateArguments {
-    #[command(flatten)]
-    scene: SceneArguments,
-    /// Scenes of other tests of the same material: one calibration meets the targets of all
-    #[arg(value_name = "OTHER SCENES")]
-    more: Vec<PathBuf>,
-    /// Material file to write, which scenes include; a page (.html) and a record (.json) of the
-    /// same name are written with it
-    #[arg(long, short, value_name = "FILE", default_value = "calibrated.toml")]
-    output: PathBuf,
-    /// Number to vary: modulus, strength (all strengths of the bonds by one factor), one strength
-    /// such as shear_strength, or PATH=MEASURE:VALUE for another number of the scene and a measure
-    /// or test result (SI units) that it determines; modulus and strength unless given. With several
-    /// scenes also friction_angle, and PATH alone
-    #[arg(long, value_name = "NUMBER")]
-    free: Vec<String>,
-    /// With several scenes: STL file of a scene's body, in place of that after --
-    #[arg(long, value_name = "SCENE=FILE", requires_all = ["pack", "more"])]
-    shape: Vec<String>,
-    /// With several scenes: a further result that a scene has to give, such as
-    /// "shear.toml=residual strength:80 kPa"; without a value that of its measured file
-    #[arg(long, value_name = "SCENE=RESULT:VALUE", requires = "more")]
-    target: Vec<String>,
-    /// Modulus to meet: from the travel, as test rigs measure it, or from the specimen's own
-    /// deformation
-    #[arg(long, value_enum, default_value = "travel")]
-    modulus: ModulusBy,
-    /// Number of packings of the shape after --, 4 unless given; their seeds follow that of the
-    /// arguments
-    #[arg(long, value_name = "N", requires = "pack")]
-    packings: Option<usize>,
-    /// Diameters of spheres, in place of --diameter after --; repeat it for a table over sizes
-    #[arg(long, value_name = "DIAMETERS", requires = "pack")]
-    size: Vec<String>,
-    /// Largest error of the curve, such as 5%: names the coarsest size that keeps it
-    #[arg(long, value_name = "ERROR", requires = "size")]
-    max_error: Option<String>,
-    /// Go on with an interrupted calibration
-    #[arg(long, conflicts_with = "force")]
-    resume: bool,
-    /// Overwrite an earlier calibration
-    #[arg(long)]
-    force: bool,
-    /// Only print errors; --json is still printed
-    #[arg(long, short)]
-    quiet: bool,
-    /// Shape and options of dem-pack: the body is packed anew; otherwise --body names its
-    /// packings, one each, or the scene its only one
-    #[arg(last = true, value_name = "STL OPTIONS")]
-    pack: Vec<String>,
-}
 
 /// Calibrates, writes material, page and record, and prints a summary. Targets that are not met are
 /// an error, once page and record are written.
@@ -101,14 +43,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
     }
     let most_error = options.max_error.as_deref().map(fraction).transpose()?;
     let source = options.scene.place();
-    let Some(file) = options.scene.file.as_deref() else {
-        return Err(Diagnostic::input(
-            "",
-            "no scene was given",
-            "name a scene (.toml)",
-        ));
-    };
-    let text = text_of(file, "a scene")?;
+    let text = text_of(scene_file(options)?, "a scene")?;
     let overrides = options.scene.all_overrides();
     let scene = scene_from_text(&text, &source, &overrides)?;
     for note in &scene.notes {
@@ -179,6 +114,11 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
     })
 }
 
+fn scene_file(options: &CalibrateArguments) -> Result<&Path> {
+    let no_scene = || Diagnostic::input("", "no scene was given", "name a scene (.toml)");
+    options.scene.file.as_deref().ok_or_else(no_scene)
+}
+
 /// A fraction, as in 5% or 0.05.
 fn fraction(text: &str) -> Result<f64> {
     let (number, factor) = match text.trim().strip_suffix('%') {
@@ -191,30 +131,6 @@ fn fraction(text: &str) -> Result<f64> {
         let problem = format!("'{}' is not a positive error", text.escape_debug());
         Diagnostic::input("--max-error", problem, "write 5% or 0.05")
     })
-}
-
-impl CalibrateArguments {
-    /// The shape with each size of spheres, from coarse to fine; none without `--`.
-    fn recipes(&self) -> Result<Vec<Recipe>> {
-        if let Some(wanted @ (0 | 1001..)) = self.packings {
-            let problem = format!("{wanted} is not between 1 and 1000");
-            return Err(Diagnostic::input("--packings", problem, "4 is usual"));
-        }
-        if self.pack.is_empty() {
-            return Ok(Vec::new());
-        }
-        if self.size.is_empty() {
-            return Ok(vec![Recipe::parse(&self.pack)?]);
-        }
-        let sized = self.size.iter().map(|size| {
-            let mut arguments = self.pack.clone();
-            arguments.extend(["--diameter".to_owned(), size.clone()]);
-            Recipe::parse(&arguments)
-        });
-        let mut recipes: Vec<Recipe> = sized.collect::<Result<_>>()?;
-        recipes.sort_by(|a, b| b.smallest_diameter_m().total_cmp(&a.smallest_diameter_m()));
-        Ok(recipes)
-    }
 }
 
 /// Hash of everything that the result depends on.
@@ -420,18 +336,6 @@ impl Job<'_> {
         }
         bar.finish_and_clear();
         done.and_then(|()| save(&case))
-    }
-}
-
-impl CalibrateArguments {
-    fn progress_bar(&self, name: &str) -> ProgressBar {
-        let template =
-            "calibrate {prefix}[{bar:40}] {percent:>3} % of this round, {eta} left  {msg}";
-        let bar = progress_bar(self.quiet, 1000, template);
-        if !name.is_empty() {
-            bar.set_prefix(format!("{name} "));
-        }
-        bar
     }
 }
 

@@ -4,25 +4,26 @@
 mod drop_weight;
 
 mod pressures;
+mod summary;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dem_io::safe_write::write_file;
 use dem_io::text::visible;
-use dem_io::units::{quantity, show_quantity};
+use dem_io::units::quantity;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::{
     ColumnChoice, Curve, Dimensions, EvaluatedSpecimen, ListedSpecimen, MeasuredMaterial,
     MeasuredSpecimen, Specimen, Table, TestType, evaluate, material, page, read_list, read_text,
-    statistics, write_material,
+    write_material,
 };
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
-use serde_json::json;
 
 use self::drop_weight::OreTask;
+use self::pressures::{Output, lab_under_pressure};
+use self::summary::{doubts_of, print_series, summary};
 
 #[derive(Debug, Args)]
 pub(super) struct LabArguments {
@@ -123,7 +124,13 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
         .collect::<Result<_>>()?;
     if test.has_residual() {
         let specimens = listed.iter().zip(measured).collect();
-        return pressures::lab_under_pressure(arguments, test, &dimensions, specimens, page_file);
+        let output = Output {
+            file: &output,
+            page_file: &page_file,
+            json: arguments.json,
+            quiet: arguments.quiet,
+        };
+        return lab_under_pressure(test, &dimensions, specimens, &output);
     }
     // Curves are scaled to the dimensions of the options, or else to those of the first specimen.
     let first = listed
@@ -289,36 +296,6 @@ fn page_file(output: &Path, remedy: &str) -> Result<PathBuf> {
     Ok(page_file)
 }
 
-/// A specimen with what speaks against it.
-fn doubts_of(one: &EvaluatedSpecimen) -> String {
-    format!("{}: {}", one.measured.name, one.doubts.join("; "))
-}
-
-fn summary(found: &MeasuredMaterial, evaluated: &[EvaluatedSpecimen]) -> serde_json::Value {
-    let specimens: Vec<serde_json::Value> = evaluated
-        .iter()
-        .map(|one| {
-            let regions = &one.regions;
-            json!({
-                "file": one.measured.name,
-                "young_modulus_pa": one.young_modulus_pa,
-                "strength_pa": one.strength_pa,
-                "residual_pa": one.residual_pa,
-                "failure_force_n": regions.largest_n,
-                "travel_at_failure_m": one.travel_at_failure_m,
-                "stiffness_n_m": regions.stiffness_n_m,
-                "seating_m": regions.seating_m(&one.measured.curve),
-                "offset_n": regions.offset_n,
-                "drift_n_m": regions.drift_n_m,
-                "noise_n": regions.noise_n,
-                "notes": one.all_notes(),
-                "left_out": one.doubts,
-            })
-        })
-        .collect();
-    json!({ "material": found, "specimens": specimens })
-}
-
 fn print(
     found: &MeasuredMaterial,
     evaluated: &[EvaluatedSpecimen],
@@ -335,28 +312,4 @@ fn print(
             visible(&page_file)
         )
     })
-}
-
-/// Prints what is said of the specimens, and the statistics of their material.
-fn print_series(
-    out: &mut dyn Write,
-    found: Option<&MeasuredMaterial>,
-    evaluated: &[EvaluatedSpecimen],
-) -> std::io::Result<()> {
-    for one in evaluated {
-        for note in &one.all_notes() {
-            writeln!(out, "note         {}: {note}", visible(&one.measured.name))?;
-        }
-        if !one.doubts.is_empty() {
-            writeln!(out, "left out     {}", visible(&doubts_of(one)))?;
-        }
-    }
-    let count = found.map_or(0, |found| found.specimens.len());
-    writeln!(out, "specimens    {count} of {} valid", evaluated.len())?;
-    for (name, unit, value) in found.map(statistics).unwrap_or_default() {
-        let mean = show_quantity(value.mean, unit);
-        let scatter = show_quantity(value.standard_deviation, unit);
-        writeln!(out, "{name:27}  {mean}, standard deviation {scatter}")?;
-    }
-    Ok(())
 }

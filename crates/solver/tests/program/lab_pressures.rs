@@ -101,12 +101,17 @@ fn a_shear_series_has_cohesion_and_friction_angle() {
             "{material}"
         );
         assert!(material["young_modulus_pa"].is_null());
-        assert!(bench.path(&format!("shear-{normal_kpa}kPa.json")).exists());
+        let shown = if normal_kpa < 100.0 {
+            "50kPa".to_owned()
+        } else {
+            format!("{}MPa", 1e-3 * normal_kpa)
+        };
+        assert!(bench.path(&format!("shear-{shown}.json")).exists());
     }
     let page = std::fs::read_to_string(bench.path("shear.html")).unwrap();
     for part in [
         "Strength over pressure",
-        "normal stress 100 kPa",
+        "normal stress 0.1 MPa",
         "residual strength",
     ] {
         assert!(page.contains(part), "{part}");
@@ -117,7 +122,7 @@ fn a_shear_series_has_cohesion_and_friction_angle() {
     assert!(said.contains("(95 %: ± "), "{said}");
     // A scene under another normal stress does not take it.
     let scene = super::root().join("data/scenes/direct-shear.toml");
-    let set = format!("test.measured={:?}", bench.path("shear-100kPa.json"));
+    let set = format!("test.measured={:?}", bench.path("shear-0.1MPa.json"));
     let (said, code) = refused(
         &dem_run()
             .arg("check")
@@ -127,7 +132,7 @@ fn a_shear_series_has_cohesion_and_friction_angle() {
             .unwrap(),
     );
     assert!(
-        said.contains("was measured under a normal stress of 100 kPa, not 5 MPa; name a material measured under the same"),
+        said.contains("was measured under a normal stress of 0.1 MPa, not 5 MPa; name a material measured under the same"),
         "{said}"
     );
     assert_eq!(code, 2);

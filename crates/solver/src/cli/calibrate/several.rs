@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use dem_calibration::{
-    End, JOINT_VERSION, Joint, JointTest, Trial, calibrate_joint, check_joint_rate, joint_origin,
-    joint_page, joint_report, read_joint, write_joint,
+    Aim, End, Free, JOINT_VERSION, Joint, JointTest, Trial, calibrate_joint, check_joint_rate,
+    joint_origin, joint_page, joint_report, read_joint, write_joint,
 };
 use dem_io::diagnostic::Kind;
 use dem_io::hash::{file_hash, fnv1a_of_parts};
@@ -20,8 +20,8 @@ use dem_scene::{material_text_of_all, scene_from_text, text_of};
 use dem_terminal::program::today;
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 
+use super::arguments::{CalibrateArguments, PACKINGS};
 use super::output_files::{OutputFiles, not_met};
-use super::{CalibrateArguments, PACKINGS};
 use crate::calibration::{
     JointBeginning, JointBench, Prospect, TestBodies, TestScene, aims, free_numbers, pace,
     prospect, shared_bonds,
@@ -55,33 +55,8 @@ pub(super) fn calibrate_several(options: &CalibrateArguments, interrupt: &Interr
     files.refuse(&inputs, existing)?;
     let unknowns = free_numbers(&tests, &overrides, bonds, &options.free)?;
     in_pool(options.scene.threads, |threads| {
-        let mut bodies = Vec::new();
-        let mut prospects: Vec<Prospect> = Vec::new();
-        for (test, packings) in tests.iter().zip(&packings) {
-            let others = packings.other_bodies(&test.scene)?;
-            let first = packings.make(0, 0, &AtomicBool::new(false))?;
-            let found = prospect(&test.scene, &packings.body, &first, &others, threads)?;
-            prospects.push(found);
-            bodies.push(TestBodies {
-                body: packings.body.clone(),
-                packings: vec![first],
-                others,
-            });
-        }
-        let stiffnesses: Vec<Option<f64>> = prospects.iter().map(|one| one.stiffness_n_m).collect();
-        let aims = aims(
-            &tests,
-            &overrides,
-            options.modulus,
-            &stiffnesses,
-            &unknowns,
-            &options.target,
-        )?;
-        for (at, (test, prospect)) in tests.iter().zip(&prospects).enumerate() {
-            let own = aims.iter().filter(|aim| aim.test == at);
-            let own = own.map(|aim| (aim.result.as_str(), aim.target));
-            prospect.check_targets(&test.scene, &own.collect::<Vec<_>>())?;
-        }
+        let looked = look(&tests, &packings, threads)?;
+        let aims = looked.aims(options, &tests, &overrides, &unknowns)?;
         let identity = identity(options, &tests, &inputs);
         let mut joint = match options.resume {
             true => resumed(&files, identity)?,
@@ -92,7 +67,7 @@ pub(super) fn calibrate_several(options: &CalibrateArguments, interrupt: &Interr
                     program: format!("dem-run {}", env!("CARGO_PKG_VERSION")),
                     date: today(),
                     identity,
-                    tests: joint_tests(options, &tests, &packings, &prospects),
+                    tests: joint_tests(options, &tests, &packings, &looked.prospects),
                     unknowns,
                     aims,
                     start: None,
@@ -109,8 +84,8 @@ pub(super) fn calibrate_several(options: &CalibrateArguments, interrupt: &Interr
             overrides: &overrides,
             tests: &tests,
             packings: &packings,
-            bodies,
-            stiffnesses: &stiffnesses,
+            bodies: looked.bodies,
+            stiffnesses: &looked.stiffnesses,
             threads,
             files: &files,
         };
@@ -123,6 +98,62 @@ pub(super) fn calibrate_several(options: &CalibrateArguments, interrupt: &Interr
         })?;
         finish(options, &joint, &files, &tests, &overrides)
     })
+}
+
+/// The first packing of each test, and what is known before the tests.
+struct Looked {
+    bodies: Vec<TestBodies>,
+    prospects: Vec<Prospect>,
+    /// Stiffness of the measured curve of each test, N/m.
+    stiffnesses: Vec<Option<f64>>,
+}
+
+fn look(tests: &[TestScene], packings: &[Packings], threads: usize) -> Result<Looked> {
+    let mut looked = Looked {
+        bodies: Vec::new(),
+        prospects: Vec::new(),
+        stiffnesses: Vec::new(),
+    };
+    for (test, packings) in tests.iter().zip(packings) {
+        let others = packings.other_bodies(&test.scene)?;
+        let first = packings.make(0, 0, &AtomicBool::new(false))?;
+        let found = prospect(&test.scene, &packings.body, &first, &others, threads)?;
+        looked.stiffnesses.push(found.stiffness_n_m);
+        looked.prospects.push(found);
+        looked.bodies.push(TestBodies {
+            body: packings.body.clone(),
+            packings: vec![first],
+            others,
+        });
+    }
+    Ok(looked)
+}
+
+impl Looked {
+    /// What the tests are to give; refuses strokes that are too short for it.
+    fn aims(
+        &self,
+        options: &CalibrateArguments,
+        tests: &[TestScene],
+        overrides: &[String],
+        unknowns: &[Free],
+    ) -> Result<Vec<Aim>> {
+        let by = options.modulus;
+        let aims = aims(
+            tests,
+            overrides,
+            by,
+            &self.stiffnesses,
+            unknowns,
+            &options.target,
+        )?;
+        for (at, (test, prospect)) in tests.iter().zip(&self.prospects).enumerate() {
+            let own = aims.iter().filter(|aim| aim.test == at);
+            let own = own.map(|aim| (aim.result.as_str(), aim.target));
+            prospect.check_targets(&test.scene, &own.collect::<Vec<_>>())?;
+        }
+        Ok(aims)
+    }
 }
 
 /// Refuses what only a calibration by one scene has.

@@ -1,7 +1,7 @@
 //! `dem-run lab` for tests under pressure: a measured material for each pressure, and the failure
 //! line through the strengths of all.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use dem_io::safe_write::write_file;
 use dem_io::text::visible;
@@ -15,35 +15,44 @@ use dem_laboratory::{
 use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use serde_json::json;
 
-use super::{LabArguments, doubts_of, print_series, summary};
+use super::summary::{doubts_of, print_series, summary};
+
+/// What is written and printed.
+pub(super) struct Output<'a> {
+    /// File of the material; of several the pressure is in its name.
+    pub(super) file: &'a Path,
+    pub(super) page_file: &'a Path,
+    pub(super) json: bool,
+    pub(super) quiet: bool,
+}
 
 /// Evaluates the specimens of each pressure, writes their materials and a page for all, and prints a
 /// summary. No valid specimen is an error, once the page is written.
 pub(super) fn lab_under_pressure(
-    arguments: &LabArguments,
     test: TestType,
     dimensions: &Dimensions,
     specimens: Vec<(&ListedSpecimen, MeasuredSpecimen)>,
-    page_file: PathBuf,
+    output: &Output<'_>,
 ) -> Result<()> {
+    let page_file = output.page_file;
     let series = series(test, dimensions, specimens)?;
-    let outputs: Vec<PathBuf> = series
+    let files: Vec<PathBuf> = series
         .iter()
-        .map(|one| output(arguments, &series, one))
+        .map(|one| file_of(output.file, &series, one))
         .collect();
     let mut inputs: Vec<PathBuf> = Vec::new();
     let names = series.iter().flat_map(|one| &one.evaluated);
     inputs.extend(names.map(|one| PathBuf::from(&one.measured.name)));
-    refuse_to_replace(&outputs, &inputs)?;
+    refuse_to_replace(&files, &inputs)?;
     let line = line(test, &series);
-    write_file(&page_file, |out| {
+    write_file(page_file, |out| {
         out.write_all(page_of_series(&series, line.as_ref()).as_bytes())
     })?;
     let mut written = Vec::new();
-    for (one, output) in series.iter().zip(outputs) {
+    for (one, file) in series.iter().zip(files) {
         if let Some(found) = &one.material {
-            write_material(&output, found)?;
-            written.push(output);
+            write_material(&file, found)?;
+            written.push(file);
         }
     }
     if written.is_empty() {
@@ -53,13 +62,13 @@ pub(super) fn lab_under_pressure(
         let remedy = format!("see {}", visible(&page_file.display().to_string()));
         return Err(Diagnostic::input("", problem, remedy));
     }
-    written.push(page_file);
-    if arguments.json {
+    written.push(page_file.to_owned());
+    if output.json {
         let of = |one: &Series| Some(summary(one.material.as_ref()?, &one.evaluated));
         let all: Vec<serde_json::Value> = series.iter().filter_map(of).collect();
         return write_standard_json(&json!({ "series": all, "failure_line": line }));
     }
-    if arguments.quiet {
+    if output.quiet {
         return Ok(());
     }
     write_standard_output(|out| {
@@ -117,15 +126,13 @@ fn series(
 }
 
 /// The file of the material of a pressure, which is in its name if there are several.
-fn output(arguments: &LabArguments, all: &[Series], one: &Series) -> PathBuf {
-    let output = arguments.output("measured.json");
+fn file_of(file: &Path, all: &[Series], one: &Series) -> PathBuf {
     if all.len() == 1 {
-        return output;
+        return file.to_owned();
     }
-    let stem = output.file_stem().unwrap_or_default();
+    let stem = file.file_stem().unwrap_or_default();
     let pressure = show_quantity(one.pressure_pa(), "Pa").replace(' ', "");
-    let name = format!("{}-{pressure}.json", stem.to_string_lossy());
-    output.with_file_name(name)
+    file.with_file_name(format!("{}-{pressure}.json", stem.to_string_lossy()))
 }
 
 /// The line through the strengths of all valid specimens.
