@@ -16,7 +16,7 @@ const SHEET: &str = concat!(
     "/../../data/measured/quartzite-drop-weight.csv"
 );
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../doc/breakage.md");
-const TABLE: [&str; 2] = ["<!-- table: quartzite -->", "<!-- end of table -->"];
+const TABLE: [&str; 2] = ["<!-- quartzite -->\n", "<!-- end of quartzite -->"];
 /// The n whose t_n are compared. The daughters go down to a 26th of the particle.
 const COMPARED: [f64; 3] = [4.0, 10.0, 25.0];
 const SMALLEST: f64 = 1.0 / 26.0;

@@ -35,14 +35,14 @@ struct Due {
     /// Number of the clump.
     clump: usize,
     /// What its daughters follow from.
-    into: Into,
+    into: Origin,
     /// Energy over mass that it has taken in, J/kg.
     specific_j_kg: f64,
 }
 
 /// What the daughters of a particle follow from.
 #[derive(Clone, Copy)]
-enum Into {
+enum Origin {
     /// The size class with this number.
     Class(usize),
     /// The breakage law, with this t10.
@@ -98,7 +98,7 @@ fn due(state: &State) -> Vec<Due> {
 }
 
 /// What a particle breaks into, once that is certain, and its energy over mass, J/kg.
-fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Into, f64)> {
+fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Origin, f64)> {
     let intake = &clump.intake;
     let before_j = if rule.sums_impacts {
         intake.before_j
@@ -120,7 +120,7 @@ fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Into, f
         let fracture_j_kg = fracture_energy_j_kg(clump, template, law, state.model.rules.seed);
         let t10 = law.t10(template.size_m(), specific_j_kg, fracture_j_kg);
         let is_certain = t10 >= by_law.at_once_from_t10 || !intake.grows();
-        return (t10 >= SMALLEST_T10 && is_certain).then_some((Into::Law(t10), specific_j_kg));
+        return (t10 >= SMALLEST_T10 && is_certain).then_some((Origin::Law(t10), specific_j_kg));
     }
     let factor = rule.weibull_modulus.map_or(1.0, |modulus| {
         let particle = [u64::from(clump.first_id); 2];
@@ -140,7 +140,7 @@ fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Into, f
         .filter(|(_, class)| is_reached(class))
         .last()?;
     let (last, _) = classes.last()?;
-    (class == last || !intake.grows()).then_some((Into::Class(class), specific_j_kg))
+    (class == last || !intake.grows()).then_some((Origin::Class(class), specific_j_kg))
 }
 
 /// Replaces these particles, ascending, and records the events and the energy lost.
@@ -219,12 +219,12 @@ fn record(
     state.population.by_daughters[base] += 1;
     state.population.fines_kg[base] += fines_kg;
     let (into, body) = match (one.into, &state.model.rules.daughters[base]) {
-        (Into::Class(number), Some(rule)) => {
+        (Origin::Class(number), Some(rule)) => {
             let class = &state.clumps.templates[rule.classes[number].template as usize];
             (BrokenInto::Class(number), class.body.clone())
         }
-        (Into::Class(number), None) => (BrokenInto::Class(number), String::new()),
-        (Into::Law(t10), _) => (BrokenInto::Law { t10, fines_kg }, template.body.clone()),
+        (Origin::Class(number), None) => (BrokenInto::Class(number), String::new()),
+        (Origin::Law(t10), _) => (BrokenInto::Law { t10, fines_kg }, template.body.clone()),
     };
     let (mut mass_kg, mut momentum) = (0.0, Vector3::zeros());
     for daughter in daughters {
@@ -255,7 +255,7 @@ fn at_positions(clump: &Clump, template: &Template, gravity: [f64; 3], half_s: f
 }
 
 /// What a particle breaks into.
-fn daughters_of(parent: &Clump, into: Into, state: &mut State) -> Daughters {
+fn daughters_of(parent: &Clump, into: Origin, state: &mut State) -> Daughters {
     let base = state.base_of(parent.template);
     let template = Arc::clone(state.clumps.template(parent));
     let whole = |clumps| Daughters {
@@ -266,8 +266,8 @@ fn daughters_of(parent: &Clump, into: Into, state: &mut State) -> Daughters {
         return whole(Vec::new());
     };
     let number = match (into, &rule.by_law) {
-        (Into::Class(number), _) => number,
-        (Into::Law(t10), Some(by_law)) => {
+        (Origin::Class(number), _) => number,
+        (Origin::Law(t10), Some(by_law)) => {
             let seed = hash(state.model.rules.seed, [u64::from(parent.first_id)]);
             let radius_m = 0.5 * template.size_m();
             let ball_m = (radius_m - deepest_m(state, parent)).max(LEAST_BALL * radius_m);
@@ -291,7 +291,7 @@ fn daughters_of(parent: &Clump, into: Into, state: &mut State) -> Daughters {
                 fines_kg: template.mass_kg - mass_kg,
             };
         }
-        (Into::Law(_), None) => return whole(Vec::new()),
+        (Origin::Law(_), None) => return whole(Vec::new()),
     };
     let class = rule.classes[number];
     let packing = Arc::clone(&state.clumps.templates[class.template as usize]);
