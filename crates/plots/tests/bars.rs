@@ -13,19 +13,17 @@ fn read(text: &str) -> (Vec<[f64; 2]>, f64, Vec<String>) {
     loop {
         match reader.read_event().unwrap() {
             Event::Eof => return (bars, zero, texts),
-            Event::Text(text) => texts.push(text.decode().unwrap().trim().to_owned()),
+            Event::Text(text) => texts.push(text.trim().to_owned()),
             Event::Start(element) | Event::Empty(element) => {
                 let attribute = |name: &str| {
                     let found = element.try_get_attribute(name).unwrap();
-                    found.map_or(String::new(), |found| {
-                        String::from_utf8(found.value.into_owned()).unwrap()
-                    })
+                    found.map_or(String::new(), |found| found.value.into_owned())
                 };
                 let number = |name: &str| attribute(name).parse::<f64>().unwrap();
                 match (element.name().as_ref(), attribute("class").as_str()) {
-                    (b"g", class) => is_bar = class == "bar",
-                    (b"rect", _) if is_bar => bars.push([number("x"), number("width")]),
-                    (b"path", "zero") => {
+                    ("g", class) => is_bar = class == "bar",
+                    ("rect", _) if is_bar => bars.push([number("x"), number("width")]),
+                    ("path", "zero") => {
                         let path = attribute("d");
                         zero = path[1..].split(' ').next().unwrap().parse().unwrap();
                     }
