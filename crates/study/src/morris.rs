@@ -1,9 +1,9 @@
 //! Morris' method: trajectories through the ranges of all parameters, the elementary effects along
 //! them, and their statistics (Morris 1991; Campolongo et al. 2007).
 //!
-//! Each range is the interval from 0 to 1, on which a point has one of p levels 0, 1/(p - 1), ...,
-//! 1. An elementary effect is the change of a value over the step of one parameter that causes it,
-//! so that it counts over the whole range.
+//! Each range is the interval from 0 to 1, on which a point has one of p levels, the multiples of
+//! 1/(p - 1). An elementary effect is the change of a value over the step of one parameter that
+//! causes it, so that it counts over the whole range.
 
 use dem_io::random::{hash, uniform};
 use serde::Serialize;
