@@ -279,6 +279,7 @@ fn several_scenes_that_do_not_fit_are_refused_with_one_message() {
     bench.write("clay-pulled.toml", renamed);
     let text = pulled(false);
     let (without, _) = text.split_once("[test]").unwrap();
+    let without = without.replace("[run]", "[run]\nend_time = \"1 s\"");
     bench.write("untested.toml", without);
     let shape = super::root()
         .join("data/shapes/bar.stl")
