@@ -45,6 +45,14 @@ pub fn scene_with<'a>(
         }
     })?;
     for (body, setting) in files {
+        let names = scene.declared_bodies();
+        if !names.contains(body) {
+            return Err(Diagnostic::input(
+                &setting.place,
+                format!("the scene {name} has no body '{body}'"),
+                suggestion(body, names.into_iter()),
+            ));
+        }
         let path = PathBuf::from(&setting.value);
         let parts = dem_io::body::files::body_files(&path);
         let parts = parts.map_err(|error| error.within(&setting.place))?;
@@ -55,13 +63,7 @@ pub fn scene_with<'a>(
                 "make it with dem-pack, or correct the name, which counts from the study's folder",
             ));
         }
-        if !scene.set_body_file(body, &path) {
-            return Err(Diagnostic::input(
-                &setting.place,
-                format!("the scene {name} has no body '{body}'"),
-                suggestion(body, scene.declared_bodies().into_iter()),
-            ));
-        }
+        scene.set_body_file(body, &path);
     }
     Ok(scene)
 }
