@@ -215,7 +215,7 @@ fn every_split_is_an_event() {
         let time_s: f64 = time.split(',').nth(1).unwrap().parse().unwrap();
         let parent: usize = detail.split_once(" -> ").unwrap().0.parse().unwrap();
         assert_eq!(tree[parent].3, Some(time_s));
-        assert!(detail.ends_with(" particles)\""), "{detail}");
+        assert!(detail.ends_with(" particles)\",,"), "{detail}");
         parents.push(parent);
     }
     parents.sort_unstable();
