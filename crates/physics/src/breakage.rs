@@ -79,6 +79,14 @@ impl BreakageLaw {
         -self.largest_t10 * (-b_kg_j * beyond_j_kg).exp_m1()
     }
 
+    /// Energy over mass from which half of the particles of this size, m, break, J/kg: that of the
+    /// smallest t10 above the median fracture energy. Infinite: they never do.
+    pub fn breaking_energy_j_kg(&self, size_m: f64) -> f64 {
+        let b_kg_j = self.b_kg_j * (size_m / self.reference_size_m).powf(self.b_exponent);
+        let beyond_j_kg = -(1.0 - SMALLEST_T10 / self.largest_t10).ln() / b_kg_j;
+        self.median_energy_j_kg(size_m) + beyond_j_kg
+    }
+
     /// t10 from which more energy hardly makes finer pieces.
     pub fn nearly_largest_t10(&self) -> f64 {
         NEARLY_ALL * self.largest_t10

@@ -14,7 +14,12 @@ use super::clumps::template;
 use dem_engine::state::clumps::{Template, sphere_volume_m3};
 use dem_engine::state::rules::{ByLaw, DaughterRule, SizeClass};
 use dem_physics::breakage::BreakageLaw;
+use dem_physics::breakage::daughters::diameters_m;
 use dem_physics::shape::packing_fit::fit;
+
+/// Largest number of daughters of a break by a law, and ratio of sizes up to which they are counted.
+const MOST_DAUGHTERS: usize = 10_000;
+const LARGEST_RATIO: f64 = 200.0;
 
 /// The scene with the mass of each parent for its daughters, whose bodies in `read` become as large
 /// as the parent: see [`fit`]; bodies with bonds keep their proportions. Refuses loose daughters of
@@ -27,6 +32,9 @@ pub(super) fn fitted(mut scene: Scene, read: &mut BTreeMap<String, Body>) -> Res
         };
         let parent = template(&scene, parent, body)?;
         refuse_too_small(&scene, &parent, rule)?;
+        if let Some(breakage) = &rule.breakage {
+            refuse_unlawful(&scene, &parent, breakage)?;
+        }
         let Some(daughters) = &rule.daughters else {
             continue;
         };
@@ -70,6 +78,49 @@ fn refuse_same_place(scene: &Scene, parent: &Template, name: &str, body: &Body) 
         )),
         _ => Ok(()),
     }
+}
+
+/// Refuses particles of several spheres, whose size and room the law does not tell, and so many
+/// daughters that packing them takes longer than the run.
+fn refuse_unlawful(scene: &Scene, parent: &Template, breakage: &Breakage) -> Result<()> {
+    let place = format!("{}: [replacement.{}.breakage]", scene.source, parent.body);
+    if parent.spheres.len() > 1 {
+        let problem = format!(
+            "the body has {} spheres: the law is that of round particles",
+            parent.spheres.len()
+        );
+        let remedy = "write particles = [[0, 0, 0, \"20 mm\"]], one sphere, or take [replacement.NAME.daughters]";
+        return Err(Diagnostic::input(place, problem, remedy));
+    }
+    let material = scene.bodies.get(&parent.body).map(|body| &body.material);
+    let Some(law) = material.and_then(|name| scene.materials.get(name)?.breakage) else {
+        return Ok(());
+    };
+    let [size_m, smallest_m] = [parent.size_m(), breakage.smallest_size_m];
+    let ratio = size_m / smallest_m;
+    let count = match ratio > LARGEST_RATIO {
+        true => usize::MAX,
+        false => diameters_m(
+            law.family_exponent,
+            law.nearly_largest_t10(),
+            size_m,
+            smallest_m,
+        )
+        .len(),
+    };
+    if count > MOST_DAUGHTERS {
+        let problem = format!(
+            "smallest_size is {}, {} of the body: a break would make more than {MOST_DAUGHTERS} fragments",
+            show_length(smallest_m),
+            format_args!("1/{ratio:.0}")
+        );
+        return Err(Diagnostic::input(
+            place,
+            problem,
+            "write a larger smallest_size, a tenth of the body or so",
+        ));
+    }
+    Ok(())
 }
 
 fn refuse_too_small(scene: &Scene, parent: &Template, rule: &Replacement) -> Result<()> {
@@ -176,7 +227,7 @@ fn rule_of_law(law: BreakageLaw, breakage: &Breakage, parent: &Template) -> Daug
             at_once_from_t10: (breakage.at_once_from_t10)
                 .unwrap_or_else(|| law.nearly_largest_t10()),
         }),
-        needed_j_kg: law.median_energy_j_kg(parent.size_m()),
+        needed_j_kg: law.breaking_energy_j_kg(parent.size_m()),
         sums_impacts: false,
         weibull_modulus: None,
         smallest_size_m: breakage.smallest_size_m,

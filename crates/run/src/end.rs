@@ -194,7 +194,12 @@ impl Run<'_> {
             yielded_bonds: state.bonds.count_yielded(),
             sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
             fragments: of_state.map(|(clusters, all)| {
-                fragment_summary(clusters, all, &state.population.discharged)
+                fragment_summary(
+                    clusters,
+                    all,
+                    &state.population.discharged,
+                    state.population.fines_kg.iter().sum(),
+                )
             }),
             population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),

@@ -8,6 +8,7 @@ use super::schema::Kind;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::LENGTH;
+use dem_physics::breakage::SMALLEST_T10;
 use std::collections::BTreeMap;
 use std::ops::Bound::{Excluded, Unbounded};
 
@@ -57,5 +58,19 @@ pub(super) fn read(
         );
         return Err(field.fault(problem, remedy));
     }
-    Breakage::read(&table)
+    let breakage = Breakage::read(&table)?;
+    let law = known.and_then(|material| material.breakage);
+    if let (Some(field), Some(at_once), Some(law)) = (
+        table.get("at_once_from_t10"),
+        breakage.at_once_from_t10,
+        law,
+    ) && !(SMALLEST_T10..law.largest_t10).contains(&at_once)
+    {
+        let limit = format!(
+            "at least {SMALLEST_T10}, below which nothing breaks, and less than the largest_t10 of its law, {}",
+            law.largest_t10
+        );
+        return Err(field.wrong(&limit, "a usual value is 0.05"));
+    }
+    Ok(breakage)
 }

@@ -8,7 +8,7 @@ use super::schema::table_schema;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY_PER_MASS, LENGTH, MASS_PER_ENERGY};
-use dem_physics::breakage::BreakageLaw;
+use dem_physics::breakage::{BreakageLaw, SMALLEST_T10};
 
 /// Exponent of the family of fragment sizes unless given: the mean of 41 tests on granite, gneiss
 /// and quartzite (Rae et al. 2020).
@@ -21,7 +21,7 @@ table_schema! {
     pub(super) static LAW = "Breakage law";
 
     /// A: the largest part of the fragments, by mass, that is smaller than a tenth of the particle.
-    number("largest_t10").within(Excluded(0.0), Included(1.0)).required("0.5");
+    number("largest_t10").within(Excluded(SMALLEST_T10), Included(1.0)).required("0.5");
     /// b of t10 = A (1 - exp(-b (E - E_f))), for particles of the reference size.
     quantity("b", &MASS_PER_ENERGY).positive().required("\"0.9 t/kWh\"");
     /// Energy over mass, E_f, above which particles of the reference size break; with

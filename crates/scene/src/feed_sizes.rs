@@ -59,6 +59,14 @@ pub(super) fn expand(
     for body in stood_for {
         bodies.remove(&body);
         replacement.remove(&body);
+        let classes = bodies.iter();
+        let classes = classes.filter(|(_, entry)| entry.class_of.as_ref() == Some(&body));
+        let classes: Vec<String> = classes.map(|(name, _)| name.clone()).collect();
+        for rule in replacement.values_mut() {
+            if let Some(at) = rule.when.touches.iter().position(|name| *name == body) {
+                rule.when.touches.splice(at..=at, classes.iter().cloned());
+            }
+        }
     }
     Ok(())
 }

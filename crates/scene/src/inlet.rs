@@ -15,7 +15,7 @@ use super::table::Table;
 use super::tree::Value;
 use dem_io::diagnostic::Result;
 use dem_io::sieve_curve::{self, SieveCurve};
-use dem_io::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
+use dem_io::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY, significant};
 
 /// Orientation of new bodies; true for random.
 const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
@@ -193,6 +193,16 @@ fn sizes(field: &Field<'_>, inlet: &Table<'_>, folder: &Path) -> Result<FeedSize
     }
     let file = named_path(field, folder)?;
     let curve = sieve_curve::read(&file.display().to_string())?;
+    if curve.left_out != [0.0; 2] {
+        let problem = format!(
+            "names a curve that passes {} % at its smallest opening and {} % at its largest",
+            significant(100.0 * curve.left_out[0], 4),
+            significant(100.0 * (1.0 - curve.left_out[1]), 4)
+        );
+        let remedy =
+            "add the opening that nothing passes and the one that all passes: a feed has all sizes";
+        return Err(field.fault(problem, remedy));
+    }
     Ok(FeedSizes { file, curve })
 }
 

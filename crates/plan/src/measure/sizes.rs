@@ -110,7 +110,9 @@ impl Fragments {
     /// Mass of the largest fragment of a body, by its number, kg.
     pub fn largest_kg(&self, body: u32) -> f64 {
         let of_body = self.chosen(Some(body), true, true);
-        of_body.iter().map(|one| one.mass_kg).fold(0.0, f64::max)
+        // Fines are no fragment.
+        let of_body = of_body.iter().filter(|one| one.equivalent_diameter_m > 0.0);
+        of_body.map(|one| one.mass_kg).fold(0.0, f64::max)
     }
 
     /// Bodies that have fragments, with their names, and all together.

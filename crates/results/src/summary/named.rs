@@ -10,6 +10,10 @@ impl Summary {
             Some(figure) => ("discharged", figure),
             None => ("both", name),
         };
+        let has_left = self.population.as_ref().is_some_and(|p| p.discharged > 0);
+        if place == "discharged" && !has_left {
+            return (figure == "mass").then_some(0.0);
+        }
         let sizes = || self.sizes.as_ref()?.all.get(place);
         match (place, figure) {
             (_, "d10") => Some(sizes()?.d10_m),

@@ -25,11 +25,13 @@ pub(super) const DISCHARGE: &str = "discharged_mass";
 /// The plots of [`write_fragment_plots`].
 pub(crate) const FRAGMENT_PLOTS: [&str; 3] = [COUNT, SIZES, DISCHARGE];
 
-/// Fragmentation of the bodies: `fragments` of the clusters, and what outlets have removed.
+/// Fragmentation of the bodies: `fragments` of the clusters, and what outlets have removed;
+/// fines, kg, are part of the mass.
 pub(crate) fn fragment_summary(
     clusters: &Clusters,
     fragments: &[Fragment],
     discharged: &[Discharged],
+    fines_kg: f64,
 ) -> FragmentSummary {
     let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
     let gone = discharged.iter().map(|gone| gone.size.mass_kg);
@@ -37,10 +39,14 @@ pub(crate) fn fragment_summary(
         .iter()
         .map(|fragment| fragment.mass_kg)
         .chain(gone);
+    let pieces_kg: f64 = masses_kg.clone().sum();
     FragmentSummary {
         count: fragments.len() + discharged.len(),
         inside: fragments.len(),
-        mass_fraction_of_largest: mass_fraction_of_largest(masses_kg),
+        mass_fraction_of_largest: match fines_kg {
+            0.0 => mass_fraction_of_largest(masses_kg),
+            _ => mass_fraction_of_largest(masses_kg) * pieces_kg / (pieces_kg + fines_kg),
+        },
         // What has left has ended, but not in pieces.
         splits: ended.count().saturating_sub(discharged.len()),
     }

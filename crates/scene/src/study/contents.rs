@@ -322,7 +322,8 @@ pub(super) const BALANCES: [(&str, &str); 3] = [
 ];
 
 /// Results of every run with fragments, and their units: sieve sizes up to which a fraction of the
-/// mass is and t10, of all fragments and of those that left through outlets, and masses.
+/// mass is and t10, of all fragments and of those that left through outlets, to which fines count,
+/// and masses.
 pub const RUN_RESULTS: [(&str, &str); 11] = [
     ("d10", "m"),
     ("d50", "m"),

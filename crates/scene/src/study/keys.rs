@@ -194,7 +194,7 @@ table_schema! {
     /// The largest relative error of this balance in the run.
     new("balance", Kind::Word(|| words_of(&BALANCES)));
     /// A result of the fragments: `d50` and so on are sieve sizes up to which a fraction of the mass
-    /// is, of all fragments or of those that left through outlets.
+    /// is, of all fragments or of those that left through outlets, to which all fines count.
     new("run_result", Kind::Word(|| words_of(&RUN_RESULTS)));
     /// Time of the steps without start-up, s; the median of the repeats.
     new("run_time", Kind::Word(|| words_of(RunTime::WORDS)));

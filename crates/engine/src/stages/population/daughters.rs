@@ -172,7 +172,7 @@ fn replace(state: &mut State, due: &[Due]) {
             .sum();
         state.ledger.gain(after_j - (1.0 - of_fines) * before_j);
         if fines_kg > 0.0 {
-            let own = parent.angular_momentum.map(|l| of_fines * l);
+            let own = left_to_fines(&parent, &daughters, state);
             let motion = [parent.place_m, parent.velocity_m_s, own];
             fines.push(([fines_kg, of_fines * before_j], motion));
         }
@@ -203,6 +203,18 @@ fn replace(state: &mut State, due: &[Due]) {
     for (mass_and_energy, motion) in fines {
         (state.ledger).bring(-1.0, mass_and_energy, motion, state.model.gravity_m_s2);
     }
+}
+
+/// Angular momentum of a particle that its daughters do not take over, about its centre, kg m2/s.
+fn left_to_fines(parent: &Clump, daughters: &[Clump], state: &State) -> [f64; 3] {
+    let [place, velocity] = [parent.place_m, parent.velocity_m_s].map(Vector3::from);
+    let taken = daughters.iter().map(|daughter| {
+        let mass_kg = state.clumps.template(daughter).mass_kg;
+        let arm = Vector3::from(daughter.place_m) - place;
+        let around = mass_kg * arm.cross(&(Vector3::from(daughter.velocity_m_s) - velocity));
+        around + Vector3::from(daughter.angular_momentum)
+    });
+    (Vector3::from(parent.angular_momentum) - taken.sum::<Vector3<f64>>()).into()
 }
 
 /// Records the replacement of a particle by daughters and fines, kg: kinetic energies before and
@@ -279,13 +291,8 @@ fn daughters_of(parent: &Clump, into: Origin, state: &mut State) -> Daughters {
             );
             let spheres = packed(&template, &diameters_m, ball_m, seed);
             let mass_kg: f64 = spheres.iter().map(|sphere| sphere.mass_kg).sum();
-            let clumps = as_clumps(
-                parent,
-                &spheres,
-                parent.turned,
-                mass_kg / template.mass_kg,
-                state,
-            );
+            let spin = parent.spin_rad_s(&template);
+            let clumps = as_clumps(parent, &spheres, parent.turned, spin, state);
             return Daughters {
                 clumps,
                 fines_kg: template.mass_kg - mass_kg,
@@ -310,33 +317,33 @@ fn daughters_of(parent: &Clump, into: Origin, state: &mut State) -> Daughters {
         }]);
     }
     let spheres = arranged(&packing, &template);
-    whole(as_clumps(parent, &spheres, turned, 1.0, state))
+    let axes = rotation(turned);
+    let own = axes.inverse() * Vector3::from(parent.angular_momentum);
+    let spin = axes * spin_rad_s(&spheres, &own);
+    whole(as_clumps(parent, &spheres, turned, spin, state))
 }
 
 /// Spheres within a particle, about its centre of mass in axes turned like this, as clumps that
-/// move as one with this share of its angular momentum.
+/// move as one with this spin, rad/s, in the axes of space.
 fn as_clumps(
     parent: &Clump,
     spheres: &[SubSphere],
     turned: [f64; 4],
-    share: f64,
+    spin: Vector3<f64>,
     state: &mut State,
 ) -> Vec<Clump> {
     let base = state.base_of(parent.template);
     let turned = rotation(turned);
-    let angular_momentum = share * Vector3::from(parent.angular_momentum);
-    let spin = spin_rad_s(spheres, &(turned.inverse() * angular_momentum));
     let [place, velocity] = [parent.place_m, parent.velocity_m_s].map(Vector3::from);
     (spheres.iter())
         .map(|sphere| {
-            let arm = Vector3::from(sphere.place_m);
-            let own = sphere.inertia_kg_m2 * (turned * spin);
+            let arm = turned * Vector3::from(sphere.place_m);
             Clump {
                 template: sphere_template(base, sphere, state),
-                place_m: (place + turned * arm).into(),
+                place_m: (place + arm).into(),
                 turned: parent.turned,
-                velocity_m_s: (velocity + turned * spin.cross(&arm)).into(),
-                angular_momentum: own.into(),
+                velocity_m_s: (velocity + spin.cross(&arm)).into(),
+                angular_momentum: (sphere.inertia_kg_m2 * spin).into(),
                 ..Clump::default()
             }
         })
