@@ -23,7 +23,7 @@ pub(super) const MEASUREMENTS: &[Measurement] = &[
     Measurement {
         settles: Settles::Never,
         if_zero: IfZero::Untouched,
-        ..Measurement::new("work", |probe, view| work_j(probe, view))
+        ..Measurement::new("work", work_j)
     },
     Measurement {
         settles: Settles::Never,

@@ -243,7 +243,12 @@ fn a_bond_that_keeps_its_largest_factor_breaks_at_it() {
             (&eq_20, [10.0, 2.0], 2.038_152, 3.5675),
             (&eq_20, [2.0, 10.0], 3.5675, 3.5675),
             (&eq_20, [0.1, 0.143_544], 1.079_445, 1.097_499),
-            (&table, [10.0, 2.0], 1.2 + 0.4 * 0.301_03, 1.6),
+            (
+                &table,
+                [10.0, 2.0],
+                1.2 + 0.4 * std::f64::consts::LOG10_2,
+                1.6,
+            ),
         ] {
             for (keeps_largest, wanted) in [(false, present), (true, largest)] {
                 let curve = curve.clone();

@@ -66,9 +66,9 @@ fn damage_by_ended_impacts(state: &mut State, powers_w: &[Option<f64>]) {
     {
         return;
     }
-    for n in 0..powers_w.len() {
+    for (n, power_w) in powers_w.iter().enumerate() {
         let clump = &state.clumps.all[n];
-        if powers_w[n].is_some() || clump.asleep || clump.intake.impact_j <= 0.0 {
+        if power_w.is_some() || clump.asleep || clump.intake.impact_j <= 0.0 {
             continue;
         }
         let template = state.clumps.template(clump);
