@@ -193,14 +193,7 @@ impl Run<'_> {
             damaged_bonds: state.bonds.count_damaged(),
             yielded_bonds: state.bonds.count_yielded(),
             sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
-            fragments: of_state.map(|(clusters, all)| {
-                fragment_summary(
-                    clusters,
-                    all,
-                    &state.population.discharged,
-                    state.population.fines_kg.iter().sum(),
-                )
-            }),
+            fragments: of_state.map(|(all, own)| fragment_summary(all, own, &state.population)),
             population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
             taken_in: progress.monitors.taken.summary(state),

@@ -15,6 +15,7 @@ use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
 use dem_engine::state::clusters::sizes::Discharged;
 use dem_engine::state::clusters::{Cluster, Clusters, Fragment};
 use dem_engine::state::model::Model;
+use dem_engine::state::population::Population;
 use dem_plan::measure::Probe;
 use dem_plan::measure::sizes::Fragments;
 
@@ -25,14 +26,15 @@ pub(super) const DISCHARGE: &str = "discharged_mass";
 /// The plots of [`write_fragment_plots`].
 pub(crate) const FRAGMENT_PLOTS: [&str; 3] = [COUNT, SIZES, DISCHARGE];
 
-/// Fragmentation of the bodies: `fragments` of the clusters, and what outlets have removed;
-/// fines, kg, are part of the mass.
+/// Fragmentation of the bodies: `fragments` of the clusters, and what outlets have removed; fines
+/// are part of the mass.
 pub(crate) fn fragment_summary(
     clusters: &Clusters,
     fragments: &[Fragment],
-    discharged: &[Discharged],
-    fines_kg: f64,
+    population: &Population,
 ) -> FragmentSummary {
+    let discharged = &population.discharged;
+    let fines_kg: f64 = population.fines_kg.iter().fold(0.0, |sum, kg| sum + kg);
     let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
     let gone = discharged.iter().map(|gone| gone.size.mass_kg);
     let masses_kg = fragments

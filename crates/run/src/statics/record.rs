@@ -64,7 +64,7 @@ impl AtRest<'_> {
         let state = self.state;
         let fragments = state.clusters.as_ref().map(|clusters| {
             let all = fragments_of(clusters, &state.particles, &state.clumps, None);
-            fragment_summary(clusters, &all, &[], 0.0)
+            fragment_summary(clusters, &all, &state.population)
         });
         let steps_per_s = found.newton_steps as f64 / wall_s;
         Summary {
