@@ -33,17 +33,7 @@ pub fn page(record: &Record, most_error: Option<f64>) -> String {
             page.heading(&case.name);
         }
         page.list(&warnings(record, case));
-        page.table(&table(
-            &[
-                "result",
-                "mean",
-                "95 % confidence interval",
-                "target",
-                "deviation",
-                "scatter",
-            ],
-            results(record, case),
-        ));
+        page.table(&results_table(results(record, case)));
         page.table(&table(
             &["number", "found", "in the scene"],
             numbers(record, case),
@@ -52,6 +42,19 @@ pub fn page(record: &Record, most_error: Option<f64>) -> String {
         page.table(&history(record, case));
     }
     page.html()
+}
+
+/// The table of results, from their rows.
+pub(crate) fn results_table(rows: Vec<[String; 6]>) -> Table {
+    let heads = [
+        "result",
+        "mean",
+        "95 % confidence interval",
+        "target",
+        "deviation",
+        "scatter",
+    ];
+    table(&heads, rows)
 }
 
 /// A table whose first column is text.

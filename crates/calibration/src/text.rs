@@ -12,7 +12,7 @@ use crate::unknown::{Number, Unknown};
 use dem_laboratory::half_width;
 
 /// Change of a result at half the rate above which it is in doubt.
-pub(crate) const RATE_MATTERS: f64 = 0.02;
+const RATE_MATTERS: f64 = 0.02;
 
 /// The result for a terminal, some lines for each size of spheres; `most_error`: wanted error of
 /// the curve, for which the coarsest size is named.
@@ -76,29 +76,40 @@ pub(crate) fn results(record: &Record, case: &Case) -> Vec<[String; 6]> {
         let Some(statistic) = round.statistic(at) else {
             continue;
         };
-        let show = |value: f64| show_quantity(value, &unknown.unit);
-        let interval = match half_width(&statistic) {
-            Some(half) => format!(
-                "{} to {}",
-                show(statistic.mean - half),
-                show(statistic.mean + half)
-            ),
-            None => String::new(),
-        };
-        let percent = |part: f64| format!("{:.1} %", 100.0 * part);
-        rows.push([
-            unknown.result.clone(),
-            show(statistic.mean),
-            interval,
-            show(unknown.target),
-            format!("{:+.1} %", 100.0 * (statistic.mean / unknown.target - 1.0)),
-            match statistic.count {
-                1 => String::new(),
-                _ => percent(statistic.standard_deviation / statistic.mean),
-            },
-        ]);
+        let Unknown {
+            result,
+            unit,
+            target,
+            ..
+        } = unknown;
+        rows.push(result_row((result, unit), *target, &statistic));
     }
     rows
+}
+
+/// Name, mean, 95 % confidence interval, target, deviation of the mean from it and scatter of a
+/// result, from its name and unit.
+pub(crate) fn result_row(
+    (name, unit): (&str, &str),
+    target: f64,
+    statistic: &Statistic,
+) -> [String; 6] {
+    let show = |value: f64| show_quantity(value, unit);
+    let mean = statistic.mean;
+    let interval = half_width(statistic).map_or_else(String::new, |half| {
+        format!("{} to {}", show(mean - half), show(mean + half))
+    });
+    [
+        name.to_owned(),
+        show(mean),
+        interval,
+        show(target),
+        format!("{:+.1} %", 100.0 * (mean / target - 1.0)),
+        match statistic.count {
+            1 => String::new(),
+            _ => format!("{:.1} %", 100.0 * (statistic.standard_deviation / mean)),
+        },
+    ]
 }
 
 /// Path, new and old value of each number of a case.
@@ -106,12 +117,22 @@ pub(crate) fn numbers(record: &Record, case: &Case) -> Vec<[String; 3]> {
     let Some(round) = case.result() else {
         return Vec::new();
     };
-    let all = record.unknowns.iter().zip(&round.factors);
-    all.flat_map(|(unknown, factor)| {
-        let of = |number: &Number| [number.path.clone(), number.text(*factor), number.text(1.0)];
-        unknown.numbers.iter().map(of).collect::<Vec<_>>()
-    })
-    .collect()
+    let numbers = record.unknowns.iter().map(|unknown| &unknown.numbers[..]);
+    number_rows(numbers, &round.factors)
+}
+
+/// Path, new and old value of each of the numbers of some unknowns with these factors.
+pub(crate) fn number_rows<'a>(
+    unknowns: impl Iterator<Item = &'a [Number]>,
+    factors: &[f64],
+) -> Vec<[String; 3]> {
+    unknowns
+        .zip(factors)
+        .flat_map(|(numbers, factor)| {
+            let of = |one: &Number| [one.path.clone(), one.text(*factor), one.text(1.0)];
+            numbers.iter().map(of)
+        })
+        .collect()
 }
 
 /// Reasons to doubt the result of a case, a sentence each.
@@ -159,17 +180,19 @@ pub(crate) fn warnings(record: &Record, case: &Case) -> Vec<String> {
         let Some(change) = case.rate_change(at) else {
             continue;
         };
-        // Below its own scatter a change says nothing.
-        let least = half_width(&change).unwrap_or(0.0).max(RATE_MATTERS);
-        if change.mean.abs() > least {
-            warnings.push(format!(
-                "half the rate changes the {} by {}: raise test.periods",
-                unknown.result,
-                change_text(&change)
-            ));
-        }
+        warnings.extend(rate_doubt(&unknown.result, &change));
     }
     warnings
+}
+
+/// A sentence on a result that half the rate changes by this. None: by no more than it matters, or
+/// than its own scatter.
+pub(crate) fn rate_doubt(result: &str, change: &Statistic) -> Option<String> {
+    let least = half_width(change).unwrap_or(0.0).max(RATE_MATTERS);
+    (change.mean.abs() > least).then(|| {
+        let by = change_text(change);
+        format!("half the rate changes the {result} by {by}: raise test.periods")
+    })
 }
 
 /// A relative change with half its 95 % confidence interval.

@@ -20,7 +20,7 @@ mod size;
 mod t10_fit;
 
 pub use estimate::Estimate;
-pub use family_fit::{FamilyMisfit, USUAL_FAMILY_EXPONENT};
+pub use family_fit::FamilyMisfit;
 pub use ore::{FittedOre, SizeResidual, fit_ore};
 pub use ore_page::{ore_page, ore_plots};
 pub use ore_text::{ore_numbers, ore_text};

@@ -40,8 +40,8 @@ pub struct EvaluatedSpecimen {
     pub measured: MeasuredSpecimen,
     /// Regions of the curve.
     pub regions: Regions,
-    /// Young's modulus by the crosshead travel, Pa. None for a disc, for a dog bone, whose wide ends
-    /// yield as well, and for direct shear.
+    /// Young's modulus by the crosshead travel, Pa. None for a disc, for a dog bone, whose wide
+    /// ends yield as well, and for direct shear.
     pub young_modulus_pa: Option<f64>,
     /// Stress at the largest force, Pa.
     pub strength_pa: f64,

@@ -42,8 +42,8 @@ pub enum TestType {
     DropWeight,
 }
 
-/// Dimensions of a specimen, and the pressure under which it is tested; those that its test does not
-/// have stay empty.
+/// Dimensions of a specimen, and the pressure under which it is tested; those that its test does
+/// not have stay empty.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dimensions {
     /// Distance of the supports of a beam, m.

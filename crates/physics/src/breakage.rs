@@ -26,6 +26,9 @@ pub mod daughters;
 
 /// t10 below which a particle does not break: what it would lose are chips, which break none.
 pub const SMALLEST_T10: f64 = 0.01;
+/// Exponent of the family of fragment sizes where none is measured: the mean of 41 tests on
+/// granite, gneiss and quartzite (Rae et al. 2020).
+pub const USUAL_FAMILY_EXPONENT: f64 = 0.87;
 /// Once t10 is this part of its largest value, more energy hardly makes finer pieces.
 const NEARLY_ALL: f64 = 0.9;
 /// Standard deviations on each side over which scatter is averaged, and their parts.
@@ -71,19 +74,23 @@ impl BreakageLaw {
         median_j_kg * (self.energy_scatter * normal).exp()
     }
 
+    /// b of particles of this size, m, in kg/J.
+    fn b_of_size_kg_j(&self, size_m: f64) -> f64 {
+        self.b_kg_j * (size_m / self.reference_size_m).powf(self.b_exponent)
+    }
+
     /// t10 of a particle of this size, m, with this fracture energy, that takes in this energy,
     /// both over its mass, J/kg: 0 if it does not break.
     pub fn t10(&self, size_m: f64, energy_j_kg: f64, fracture_energy_j_kg: f64) -> f64 {
         let beyond_j_kg = (energy_j_kg - fracture_energy_j_kg).max(0.0);
-        let b_kg_j = self.b_kg_j * (size_m / self.reference_size_m).powf(self.b_exponent);
-        -self.largest_t10 * (-b_kg_j * beyond_j_kg).exp_m1()
+        -self.largest_t10 * (-self.b_of_size_kg_j(size_m) * beyond_j_kg).exp_m1()
     }
 
     /// Energy over mass from which half of the particles of this size, m, break, J/kg: that of the
     /// smallest t10 above the median fracture energy. Infinite: they never do.
     pub fn breaking_energy_j_kg(&self, size_m: f64) -> f64 {
-        let b_kg_j = self.b_kg_j * (size_m / self.reference_size_m).powf(self.b_exponent);
-        let beyond_j_kg = -(1.0 - SMALLEST_T10 / self.largest_t10).ln() / b_kg_j;
+        let beyond_j_kg =
+            -(1.0 - SMALLEST_T10 / self.largest_t10).ln() / self.b_of_size_kg_j(size_m);
         self.median_energy_j_kg(size_m) + beyond_j_kg
     }
 

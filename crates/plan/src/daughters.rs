@@ -11,13 +11,15 @@ use dem_scene::{Breakage, CountedEnergy, Daughters, Material, Replacement, Scene
 use nalgebra::Vector3;
 
 use super::clumps::template;
+use super::sieve_sizes::grow;
 use dem_engine::state::clumps::{Template, sphere_volume_m3};
 use dem_engine::state::rules::{ByLaw, DaughterRule, SizeClass};
 use dem_physics::breakage::BreakageLaw;
 use dem_physics::breakage::daughters::diameters_m;
 use dem_physics::shape::packing_fit::fit;
 
-/// Largest number of daughters of a break by a law, and ratio of sizes up to which they are counted.
+/// Largest number of daughters of a break by a law, and ratio of sizes up to which they are
+/// counted.
 const MOST_DAUGHTERS: usize = 10_000;
 const LARGEST_RATIO: f64 = 200.0;
 
@@ -92,8 +94,7 @@ fn refuse_unlawful(scene: &Scene, parent: &Template, breakage: &Breakage) -> Res
         let remedy = "write particles = [[0, 0, 0, \"20 mm\"]], one sphere, or take [replacement.NAME.daughters]";
         return Err(Diagnostic::input(place, problem, remedy));
     }
-    let material = scene.bodies.get(&parent.body).map(|body| &body.material);
-    let Some(law) = material.and_then(|name| scene.materials.get(name)?.breakage) else {
+    let Some(law) = law_of(scene, &parent.body) else {
         return Ok(());
     };
     let [size_m, smallest_m] = [parent.size_m(), breakage.smallest_size_m];
@@ -110,9 +111,8 @@ fn refuse_unlawful(scene: &Scene, parent: &Template, breakage: &Breakage) -> Res
     };
     if count > MOST_DAUGHTERS {
         let problem = format!(
-            "smallest_size is {}, {} of the body: a break would make more than {MOST_DAUGHTERS} fragments",
-            show_length(smallest_m),
-            format_args!("1/{ratio:.0}")
+            "smallest_size is {}, 1/{ratio:.0} of the body: a break would make more than {MOST_DAUGHTERS} fragments",
+            show_length(smallest_m)
         );
         return Err(Diagnostic::input(
             place,
@@ -165,19 +165,11 @@ fn scale(body: &mut Body, parent: &Template) {
     };
     if body.bonds.is_empty() {
         body.about = About::default();
-    } else if let Some(volume_m3) = &mut body.about.shape_volume_m3 {
-        *volume_m3 *= of_radii.powi(3);
     }
     for (place, arm) in body.positions.iter_mut().zip(&arms_m) {
         *place = arm.map(|x| of_centres * x);
     }
-    for column in &mut body.bond_histories {
-        column.grow(of_radii);
-    }
-    let lengths = body.radii.iter_mut().chain(&mut body.bond_radii);
-    lengths
-        .chain(&mut body.bond_lengths)
-        .for_each(|length| *length *= of_radii);
+    grow(body, of_radii);
 }
 
 /// The rule of each template. None: no daughters replace its particles.
@@ -188,9 +180,7 @@ pub(super) fn daughter_rules(
     let rule = |parent: &Arc<Template>| {
         let rule = scene.replacement.get(&parent.body)?;
         if let Some(breakage) = &rule.breakage {
-            let material = &scene.bodies.get(&parent.body)?.material;
-            let law = scene.materials.get(material)?.breakage?;
-            return Some(rule_of_law(law, breakage, parent));
+            return Some(rule_of_law(law_of(scene, &parent.body)?, breakage, parent));
         }
         let daughters = rule.daughters.as_ref()?;
         let class = |class: &dem_scene::SizeClass| {
@@ -215,6 +205,14 @@ pub(super) fn daughter_rules(
         })
     };
     templates.iter().map(rule).collect()
+}
+
+/// The breakage law of the material of a body.
+fn law_of(scene: &Scene, body: &str) -> Option<BreakageLaw> {
+    scene
+        .materials
+        .get(&scene.bodies.get(body)?.material)?
+        .breakage
 }
 
 /// The rule of particles that break by the law of their material.

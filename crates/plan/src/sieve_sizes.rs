@@ -14,15 +14,21 @@ pub(super) fn scale_to_sieves(scene: &Scene, read: &mut BTreeMap<String, Body>) 
             let balls: Vec<Ball> = spheres
                 .map(|(place, radius)| ((*place).into(), *radius))
                 .collect();
-            grow(body, size_m / smallest_opening_m(&balls));
+            scale(body, size_m / smallest_opening_m(&balls));
         }
     }
 }
 
 /// Scales a body about the origin of its file.
-fn grow(body: &mut Body, factor: f64) {
+fn scale(body: &mut Body, factor: f64) {
     let places = body.positions.iter_mut().flatten();
-    let lengths = places.chain(&mut body.radii).chain(&mut body.bond_radii);
+    places.for_each(|place| *place *= factor);
+    grow(body, factor);
+}
+
+/// Scales all of a body but the places of its spheres.
+pub(super) fn grow(body: &mut Body, factor: f64) {
+    let lengths = body.radii.iter_mut().chain(&mut body.bond_radii);
     let lengths = lengths.chain(&mut body.bond_lengths);
     let lengths = lengths.chain(&mut body.about.thinnest_part_m);
     lengths.for_each(|length| *length *= factor);
@@ -36,7 +42,7 @@ fn grow(body: &mut Body, factor: f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::grow;
+    use super::scale;
     use dem_io::Body;
 
     #[test]
@@ -52,7 +58,7 @@ mod tests {
         body.about.shape_volume_m3 = Some(10.0);
         body.about.thinnest_part_m = Some(4.0);
         body.about.particles_across = Some(2.0);
-        grow(&mut body, 2.0);
+        scale(&mut body, 2.0);
         assert_eq!(body.positions[1], [8.0, 10.0, 12.0]);
         assert_eq!((body.radii, body.bond_radii), (vec![2.0, 4.0], vec![1.0]));
         assert_eq!(body.bond_lengths, [6.0]);

@@ -2,8 +2,9 @@
 //! processor.
 //!
 //! A [`Plot`] has lines, marks with error bars or both over a pair of axes; a [`Map`] shows
-//! positions to scale; [`Bars`] rank; a [`Page`] contains text, tables, plots and maps. All are plain data, and
-//! equal data gives equal bytes. Only `maud` writes tags, so that no text can be taken for one.
+//! positions to scale; [`Bars`] rank; a [`Page`] contains text, tables, plots and maps. All are
+//! plain data, and equal data gives equal bytes. Only `maud` writes tags, so that no text can be
+//! taken for one.
 
 mod bars;
 mod colours;

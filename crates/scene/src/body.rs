@@ -67,8 +67,8 @@ pub struct BodyEntry {
     /// `sieve_size`: smallest square opening that the body is scaled to pass, m. None: the size of
     /// its file.
     pub sieve_size_m: Option<f64>,
-    /// The body of the scene that it is a size class of: see [`super::FeedSizes`]. None: it is in the
-    /// scene itself.
+    /// The body of the scene that it is a size class of: see [`super::FeedSizes`]. None: it is in
+    /// the scene itself.
     pub class_of: Option<String>,
     /// `body_density` or `mass`. None: its spheres have the density of the material.
     pub whole_mass: Option<WholeMass>,

@@ -18,8 +18,8 @@ const LIMIT: f64 = 1e6;
 plain_table! {
     BREAKAGE = "Breakage";
     /// The particle breaks by the breakage law of its material: into loose spheres within it, whose
-    /// sizes follow from the energy that it took in. These break in turn. Below a t10 of 1 % it does
-    /// not break.
+    /// sizes follow from the energy that it took in. These break in turn. Below a t10 of 1 % it
+    /// does not break.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Breakage {
         /// Fragments smaller than this are not made: their mass is recorded as fines.

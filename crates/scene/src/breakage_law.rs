@@ -8,11 +8,7 @@ use super::schema::table_schema;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY_PER_MASS, LENGTH, MASS_PER_ENERGY};
-use dem_physics::breakage::{BreakageLaw, SMALLEST_T10};
-
-/// Exponent of the family of fragment sizes unless given: the mean of 41 tests on granite, gneiss
-/// and quartzite (Rae et al. 2020).
-const FAMILY: f64 = 0.87;
+use dem_physics::breakage::{BreakageLaw, SMALLEST_T10, USUAL_FAMILY_EXPONENT};
 
 table_schema! {
     /// How particles of the material break by the energy that they take in, for
@@ -37,7 +33,7 @@ table_schema! {
     number("energy_exponent").or(0.0);
     /// a of t_n = 1 - (1 - t10)^((9/(n - 1))^a), the part of the fragments smaller than the size of
     /// the particle over n.
-    number("family_exponent").positive().or(FAMILY);
+    number("family_exponent").positive().or(USUAL_FAMILY_EXPONENT);
 }
 
 /// The law in the table in `field`.

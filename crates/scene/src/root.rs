@@ -98,16 +98,13 @@ impl Scene {
             .collect()
     }
 
-    /// Gives a body another file, in all its sizes. False: there is no such body.
-    pub fn set_body_file(&mut self, name: &str, file: &Path) -> bool {
-        let mut found = false;
+    /// Gives a body another file, in all its sizes.
+    pub fn set_body_file(&mut self, name: &str, file: &Path) {
         for (own, entry) in &mut self.bodies {
             if entry.class_of.as_ref().unwrap_or(own) == name {
                 entry.source = BodySource::File(file.to_owned());
-                found = true;
             }
         }
-        found
     }
 
     /// The body whose daughters a body is: see [`Replacement::daughters`]. None: it is none.

@@ -31,7 +31,8 @@ pub struct IncreaseTable {
 
 impl IncreaseTable {
     /// The tables of a study that varies the velocity of the striker of split-Hopkinson tests, and
-    /// measures `strain rate` and `dynamic increase factor`. Empty: another study, or no valid test.
+    /// measures `strain rate` and `dynamic increase factor`. Empty: another study, or no valid
+    /// test.
     pub(crate) fn all_of(study: &Study, rows: &[Row]) -> Vec<Self> {
         let measure = |wanted: &str| {
             let is = |of: &MeasureOf| matches!(of, MeasureOf::Figure(name) if name == wanted);

@@ -55,8 +55,8 @@ impl Change {
     }
 }
 
-/// d ln y/d ln x between two points `[x, y]`, by how many per cent y changes where x changes by one.
-/// None: a logarithm does not exist.
+/// d ln y/d ln x between two points `[x, y]`, by how many per cent y changes where x changes by
+/// one. None: a logarithm does not exist.
 pub fn elasticity([x, y]: [f64; 2], [other_x, other_y]: [f64; 2]) -> Option<f64> {
     let [of_x, of_y] = [other_x / x, other_y / y];
     let is_meaningful = x > 0.0 && other_x > 0.0 && of_x != 1.0 && of_y > 0.0 && of_y.is_finite();

@@ -196,7 +196,8 @@ fn the_interval_covers_the_true_value() {
             all += 1;
         }
     }
-    // Binomial of 400 with 0.95: a standard deviation of 1.1 %; a bootstrap of 30 is a little narrow.
+    // Binomial of 400 with 0.95: a standard deviation of 1.1 %; a bootstrap of 30 is a little
+    // narrow.
     let share = f64::from(covered) / f64::from(all);
     assert!((0.90..=0.99).contains(&share), "{share}");
 }

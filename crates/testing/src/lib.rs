@@ -9,9 +9,11 @@
 pub mod made_test;
 mod messages;
 mod random;
+mod table;
 
 pub use messages::hold_messages;
 pub use random::Random;
+pub use table::hold_table;
 
 use std::io::Write;
 use std::path::Path;

@@ -6,7 +6,7 @@ use dem_plots::{Line, MOST_LINES, Page, Plot, Row, Table};
 use super::state::Joint;
 use super::text::{failure_lines, numbers, results, warnings};
 use crate::case::Round;
-use crate::page::{columns, table};
+use crate::page::{columns, results_table, table};
 
 /// Everything about a calibration by several tests on one page that needs no other file.
 pub fn joint_page(joint: &Joint) -> String {
@@ -26,17 +26,7 @@ pub fn joint_page(joint: &Joint) -> String {
             test.packings.join(", "),
             significant(test.spheres_across, 3)
         ));
-        page.table(&table(
-            &[
-                "result",
-                "mean",
-                "95 % confidence interval",
-                "target",
-                "deviation",
-                "scatter",
-            ],
-            results(joint, at),
-        ));
+        page.table(&results_table(results(joint, at)));
         page.figure(&curves(joint, at).svg());
     }
     page.heading("Rounds");

@@ -5,9 +5,7 @@ use dem_laboratory::{FailureLine, TestType};
 
 use super::state::{Aim, Joint};
 use crate::case::End;
-use crate::text::{RATE_MATTERS, change_text, line, prediction};
-use crate::unknown::Number;
-use dem_laboratory::half_width;
+use crate::text::{change_text, line, number_rows, prediction, rate_doubt, result_row};
 
 /// The result for a terminal: some lines for each test, the numbers, cost and warnings.
 pub fn joint_report(joint: &Joint) -> String {
@@ -62,39 +60,16 @@ pub(super) fn results(joint: &Joint, test: usize) -> Vec<[String; 6]> {
     };
     let aims = joint.aims.iter().enumerate();
     let row = |(at, aim): (usize, &Aim)| {
-        let show = |value: f64| show_quantity(value, &aim.unit);
         let Some(statistic) = joint.statistic(round, at) else {
-            let missing = "not of all packings".to_owned();
-            let empty = String::new;
-            let target = show(aim.target);
-            return [
+            let [result, missing, target] = [
                 aim.result.clone(),
-                missing,
-                empty(),
-                target,
-                empty(),
-                empty(),
+                "not of all packings".to_owned(),
+                show_quantity(aim.target, &aim.unit),
             ];
+            let none = String::new;
+            return [result, missing, none(), target, none(), none()];
         };
-        let half = half_width(&statistic);
-        let interval = half.map_or_else(String::new, |half| {
-            let [low, high] = [statistic.mean - half, statistic.mean + half].map(show);
-            format!("{low} to {high}")
-        });
-        [
-            aim.result.clone(),
-            show(statistic.mean),
-            interval,
-            show(aim.target),
-            format!("{:+.1} %", 100.0 * (statistic.mean / aim.target - 1.0)),
-            match statistic.count {
-                1 => String::new(),
-                _ => format!(
-                    "{:.1} %",
-                    100.0 * statistic.standard_deviation / statistic.mean
-                ),
-            },
-        ]
+        result_row((&aim.result, &aim.unit), aim.target, &statistic)
     };
     aims.filter(|(_, aim)| aim.test == test).map(row).collect()
 }
@@ -163,12 +138,8 @@ pub(super) fn numbers(joint: &Joint) -> Vec<[String; 3]> {
     let Some(round) = joint.result() else {
         return Vec::new();
     };
-    let all = joint.unknowns.iter().zip(&round.factors);
-    all.flat_map(|(unknown, factor)| {
-        let of = |number: &Number| [number.path.clone(), number.text(*factor), number.text(1.0)];
-        unknown.numbers.iter().map(of).collect::<Vec<_>>()
-    })
-    .collect()
+    let numbers = joint.unknowns.iter().map(|unknown| &unknown.numbers[..]);
+    number_rows(numbers, &round.factors)
 }
 
 /// Reasons to doubt the result, a sentence each.
@@ -211,16 +182,9 @@ pub(super) fn warnings(joint: &Joint) -> Vec<String> {
         let Some(change) = joint.rate_change(at) else {
             continue;
         };
-        // Below its own scatter a change says nothing.
-        let least = half_width(&change).unwrap_or(0.0).max(RATE_MATTERS);
-        if change.mean.abs() > least {
-            warnings.push(format!(
-                "{}: half the rate changes the {} by {}: raise test.periods",
-                joint.tests[aim.test].scene,
-                aim.result,
-                change_text(&change)
-            ));
-        }
+        let scene = &joint.tests[aim.test].scene;
+        let doubt = rate_doubt(&aim.result, &change);
+        warnings.extend(doubt.map(|doubt| format!("{scene}: {doubt}")));
     }
     warnings
 }

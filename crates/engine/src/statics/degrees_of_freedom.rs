@@ -130,7 +130,8 @@ fn way(hold: Hold, factor: &Factor, end_s: f64) -> f64 {
     }
 }
 
-/// Integral of a factor from 0 to `end_s`, s: unless it oscillates, it is linear between its points.
+/// Integral of a factor from 0 to `end_s`, s: unless it oscillates, it is linear between its
+/// points.
 fn integral_s(factor: &Factor, end_s: f64) -> f64 {
     let mut times = vec![0.0, end_s];
     match factor {

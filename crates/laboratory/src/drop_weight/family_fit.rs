@@ -1,13 +1,11 @@
 //! The family of t_n.
 
-use dem_physics::breakage::passing;
+use dem_physics::breakage::{USUAL_FAMILY_EXPONENT, passing};
 
 use super::estimate::Estimate;
 use super::sheet::DropWeightTest;
 use crate::student::student_95;
 
-/// Mean of 41 tests on granite, gneiss and quartzite (Rae et al. 2020).
-pub const USUAL_FAMILY_EXPONENT: f64 = 0.87;
 /// Exponents between which the family is looked for.
 const EXPONENTS: [f64; 2] = [0.1, 3.0];
 /// Values of t10 between which the fineness of a test is looked for, and the steps of that.

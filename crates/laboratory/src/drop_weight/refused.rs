@@ -4,12 +4,12 @@ use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use dem_physics::breakage::passing;
 
-use super::family_fit::USUAL_FAMILY_EXPONENT;
 use super::sheet::DropWeightTest;
 use super::size::{SizeGroup, size_groups};
 use crate::fit::Line;
 use crate::student::student_95;
 use crate::units::J_KG_OF_KWH_T;
+use dem_physics::breakage::USUAL_FAMILY_EXPONENT;
 
 /// Energies over mass of tests, J/kg: ores take 0.001 to 10 kWh/t.
 const ENERGIES_J_KG: [f64; 2] = [1e-4 * J_KG_OF_KWH_T, 100.0 * J_KG_OF_KWH_T];

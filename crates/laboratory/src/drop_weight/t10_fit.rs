@@ -5,12 +5,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::broken_fit::BrokenFit;
 use super::estimate::Estimate;
-use super::family_fit::USUAL_FAMILY_EXPONENT;
 use super::least_squares::{Fitted, Unknown, jacobian, least_squares};
 use super::sheet::DropWeightTest;
 use crate::fit::median;
 use crate::student::student_95;
 use crate::units::J_KG_OF_KWH_T;
+use dem_physics::breakage::USUAL_FAMILY_EXPONENT;
 
 /// The fitted values: ln(A b), b in t/kWh, which is the slope of t10 at small energies; 1/A, with
 /// which the law stays regular where t10 has not bent yet; the size exponent; E_0 in kWh/t.

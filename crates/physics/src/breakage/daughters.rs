@@ -14,8 +14,8 @@ const ROUNDS: usize = 60;
 const LEAST_ROOM: f64 = 0.03;
 
 /// Diameters of the daughters of a particle of this size, m, the largest first: the part of its
-/// mass in daughters above any size is 1 - t_n, to half of the mass of one daughter. None is smaller
-/// than `smallest_m`; the rest of the mass is fines. All have the density of the particle.
+/// mass in daughters above any size is 1 - t_n, to half of the mass of one daughter. None is
+/// smaller than `smallest_m`; the rest of the mass is fines. All have the density of the particle.
 pub fn diameters_m(family_exponent: f64, t10: f64, size_m: f64, smallest_m: f64) -> Vec<f64> {
     let rungs = SIZES_PER_OCTAVE * (size_m / smallest_m).log2();
     let mut rung = rungs.floor();

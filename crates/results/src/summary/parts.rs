@@ -173,7 +173,7 @@ pub struct BodyFlow {
     pub inside_kg: f64,
     /// Mass of fragments that were too small to be made, kg.
     pub fines_kg: f64,
-    /// At the start and fed, less discharged, inside and fines, kg: 0, to rounding. None: daughters of
-    /// other bodies have replaced bodies, and their mass counts as that of their own body.
+    /// At the start and fed, less discharged, inside and fines, kg: 0, to rounding. None: daughters
+    /// of other bodies have replaced bodies, and their mass counts as that of their own body.
     pub missing_kg: Option<f64>,
 }

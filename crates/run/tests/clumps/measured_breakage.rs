@@ -2,11 +2,12 @@
 //! law fitted to these tests: doc/breakage.md.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use dem_engine::state::events::{BrokenInto, PopulationEvent};
 use dem_laboratory::drop_weight::{DropWeightTest, fit_ore, read_sheets};
 use dem_physics::breakage::BreakageLaw;
+use dem_testing::hold_table;
 
 use super::planned;
 use crate::helpers::step_and_balance;
@@ -126,13 +127,5 @@ fn quartzite_breaks_as_measured_and_the_page_says_how_nearly() {
         write!(table, " | {:.1} |", 100.0 * mean(*square)).unwrap();
     }
     table.push('\n');
-    let page = std::fs::read_to_string(PAGE).unwrap();
-    let (before, rest) = page.split_once(TABLE[0]).unwrap();
-    let (written, after) = rest.split_once(TABLE[1]).unwrap();
-    if std::env::var_os("RENEW_VERIFICATION").is_some() {
-        let [begin, end] = TABLE;
-        std::fs::write(PAGE, format!("{before}{begin}{table}{end}{after}")).unwrap();
-    } else {
-        assert_eq!(written, table, "RENEW_VERIFICATION=1 writes it");
-    }
+    hold_table(Path::new(PAGE), TABLE, &table);
 }

@@ -1,9 +1,11 @@
 //! The errors of an impact of one sphere at the step that is chosen for a wanted accuracy.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use dem_engine::state::State;
 use dem_plan::time_step::impact_step_s;
+use dem_testing::hold_table;
 
 use crate::helpers::{started, step_and_balance};
 
@@ -155,15 +157,7 @@ fn the_asked_accuracy_is_met_and_the_page_says_what_it_costs() {
             .unwrap();
         }
     }
-    let page = std::fs::read_to_string(PAGE).unwrap();
-    let (before, rest) = page.split_once(TABLE[0]).unwrap();
-    let (written, after) = rest.split_once(TABLE[1]).unwrap();
-    if std::env::var_os("RENEW_VERIFICATION").is_some() {
-        let [begin, end] = TABLE;
-        std::fs::write(PAGE, format!("{before}{begin}{table}{end}{after}")).unwrap();
-    } else {
-        assert_eq!(written, table, "RENEW_VERIFICATION=1 writes it");
-    }
+    hold_table(Path::new(PAGE), TABLE, &table);
 }
 
 /// The error of the energy is of second order in the step.

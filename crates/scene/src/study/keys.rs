@@ -179,8 +179,8 @@ table_schema! {
 }
 
 table_schema! {
-    /// A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve`, `balance`,
-    /// `run_result` and `run_time`.
+    /// A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve`,
+    /// `balance`, `run_result` and `run_time`.
     pub(crate) static MEASURE = "[measures.NAME]";
 
     /// A measure of the scene.
@@ -193,8 +193,8 @@ table_schema! {
     new("curve", Kind::Word(|| words_of(&CURVES)));
     /// The largest relative error of this balance in the run.
     new("balance", Kind::Word(|| words_of(&BALANCES)));
-    /// A result of the fragments: `d50` and so on are sieve sizes up to which a fraction of the mass
-    /// is, of all fragments or of those that left through outlets, to which all fines count.
+    /// A result of the fragments: `d50` and so on are sieve sizes up to which a fraction of the
+    /// mass is, of all fragments or of those that left through outlets, to which all fines count.
     new("run_result", Kind::Word(|| words_of(&RUN_RESULTS)));
     /// Time of the steps without start-up, s; the median of the repeats.
     new("run_time", Kind::Word(|| words_of(RunTime::WORDS)));

@@ -60,7 +60,7 @@ pub(crate) fn unknowns(
     if !free.is_empty() {
         let found = free.iter().map(|one| chooser.named(one));
         let found: Vec<Unknown> = found.collect::<Result<_>>()?;
-        refuse_twice(&found)?;
+        refuse_twice(found.iter().flat_map(|unknown| &unknown.numbers))?;
         return Ok(found);
     }
     let both = [chooser.modulus()?, chooser.strength(&STRENGTHS)?];
@@ -89,10 +89,10 @@ pub(crate) fn has_all_strengths(scene: &SceneText<'_>, unknown: &Unknown) -> Res
     Ok(unknown.numbers.len() == all)
 }
 
-/// Refuses a number that two unknowns have.
-fn refuse_twice(unknowns: &[Unknown]) -> Result<()> {
+/// Refuses a number that two unknowns have, from the numbers of all.
+pub(super) fn refuse_twice<'a>(numbers: impl Iterator<Item = &'a Number>) -> Result<()> {
     let mut paths: Vec<&str> = Vec::new();
-    for number in unknowns.iter().flat_map(|unknown| &unknown.numbers) {
+    for number in numbers {
         if paths.contains(&number.path.as_str()) {
             let problem = format!("{} is named twice", number.path);
             return Err(Diagnostic::input(

@@ -12,7 +12,7 @@ use dem_rig::dynamic::DYNAMIC_RESULTS;
 use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS};
 use dem_scene::{BondKind, Scene, Test, material_text, set_text, written_value};
 
-use super::choice::{ModulusBy, STRENGTH_TOLERANCE, STRENGTHS, SceneText, unknowns};
+use super::choice::{ModulusBy, STRENGTH_TOLERANCE, STRENGTHS, SceneText, refuse_twice, unknowns};
 use super::slopes::slope;
 
 /// Largest friction angle of bonds that a calibration tries, degrees.
@@ -162,18 +162,7 @@ pub(crate) fn free_numbers(
     }
     let found = names.iter().map(|name| free(tests, overrides, bonds, name));
     let found: Vec<Free> = found.collect::<Result<_>>()?;
-    let mut paths: Vec<&str> = Vec::new();
-    for number in found.iter().flat_map(|unknown| &unknown.numbers) {
-        if paths.contains(&number.path.as_str()) {
-            let problem = format!("{} is named twice", number.path);
-            return Err(Diagnostic::input(
-                "--free",
-                problem,
-                "name each number once",
-            ));
-        }
-        paths.push(&number.path);
-    }
+    refuse_twice(found.iter().flat_map(|unknown| &unknown.numbers))?;
     Ok(found)
 }
 

@@ -6,8 +6,8 @@ use dem_laboratory::theory::PEAK_AXIAL_STRESS;
 use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, STRENGTH};
 
 /// The slope of a result over the numbers of an unknown, of all that are free: moduli and strengths
-/// of a body are nearly proportional to those of its bonds. None: it is not known, and a round finds
-/// it, such as which of several strengths a test depends on.
+/// of a body are nearly proportional to those of its bonds. None: it is not known, and a round
+/// finds it, such as which of several strengths a test depends on.
 pub(super) fn slope(result: &str, unknown: &Free, all: &[Free]) -> Option<f64> {
     let is_modulus_of_body = [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS].contains(&result);
     let is_strength_of_body = [STRENGTH, PEAK_AXIAL_STRESS].contains(&result);

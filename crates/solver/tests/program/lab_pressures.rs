@@ -44,8 +44,8 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Shear stresses at three normal stresses, two specimens each, of which the file of one has a force:
-/// peaks, residuals, the line with its intervals, and a file for each normal stress.
+/// Shear stresses at three normal stresses, two specimens each, of which the file of one has a
+/// force: peaks, residuals, the line with its intervals, and a file for each normal stress.
 #[test]
 fn a_shear_series_has_cohesion_and_friction_angle() {
     let bench = Bench::new();

@@ -73,11 +73,12 @@ fn damage_by_ended_impacts(state: &mut State, powers_w: &[Option<f64>]) {
         }
         let template = state.clumps.template(clump);
         let base = state.base_of(clump.template) as usize;
-        let Some(by_law) = state.model.rules.daughters.get(base).and_then(by_law) else {
+        let by_law = state.model.rules.daughters.get(base).and_then(by_law);
+        let Some((by_law, exponent)) = by_law.and_then(|by| Some((by, by.damage_exponent?))) else {
             continue;
         };
         let left_j_kg = fracture_energy_j_kg(clump, template, &by_law.law, state.model.rules.seed);
-        if let (Some(exponent), true) = (by_law.damage_exponent, left_j_kg > 0.0) {
+        if left_j_kg > 0.0 {
             let ratio = clump.intake.impact_j / (template.mass_kg * left_j_kg);
             let intake = &mut state.clumps.all[n].intake;
             intake.damage += (1.0 - intake.damage) * damage(ratio.min(1.0), exponent);

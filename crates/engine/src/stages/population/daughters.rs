@@ -117,10 +117,17 @@ fn reached(clump: &Clump, rule: &DaughterRule, state: &State) -> Option<(Origin,
     let specific_j_kg = energy_j / template.mass_kg;
     if let Some(by_law) = &rule.by_law {
         let law = &by_law.law;
+        let least_t10 = match intake.grows() {
+            true => by_law.at_once_from_t10.max(SMALLEST_T10),
+            false => SMALLEST_T10,
+        };
+        // Most particles take in too little for any fracture energy.
+        if law.t10(template.size_m(), specific_j_kg, 0.0) < least_t10 {
+            return None;
+        }
         let fracture_j_kg = fracture_energy_j_kg(clump, template, law, state.model.rules.seed);
         let t10 = law.t10(template.size_m(), specific_j_kg, fracture_j_kg);
-        let is_certain = t10 >= by_law.at_once_from_t10 || !intake.grows();
-        return (t10 >= SMALLEST_T10 && is_certain).then_some((Origin::Law(t10), specific_j_kg));
+        return (t10 >= least_t10).then_some((Origin::Law(t10), specific_j_kg));
     }
     let factor = rule.weibull_modulus.map_or(1.0, |modulus| {
         let particle = [u64::from(clump.first_id); 2];

@@ -26,8 +26,8 @@ pub(crate) struct CalibrateArguments {
     pub(super) output: PathBuf,
     /// Number to vary: modulus, strength (all strengths of the bonds by one factor), one strength
     /// such as shear_strength, or PATH=MEASURE:VALUE for another number of the scene and a measure
-    /// or test result (SI units) that it determines; modulus and strength unless given. With several
-    /// scenes also friction_angle, and PATH alone
+    /// or test result (SI units) that it determines; modulus and strength unless given. With
+    /// several scenes also friction_angle, and PATH alone
     #[arg(long, value_name = "NUMBER")]
     pub(super) free: Vec<String>,
     /// With several scenes: STL file of a scene's body, in place of that after --

@@ -26,8 +26,8 @@ pub(super) struct Output<'a> {
     pub(super) quiet: bool,
 }
 
-/// Evaluates the specimens of each pressure, writes their materials and a page for all, and prints a
-/// summary. No valid specimen is an error, once the page is written.
+/// Evaluates the specimens of each pressure, writes their materials and a page for all, and prints
+/// a summary. No valid specimen is an error, once the page is written.
 pub(super) fn lab_under_pressure(
     test: TestType,
     dimensions: &Dimensions,
