@@ -18,6 +18,9 @@ const ABOVE_SCATTER: f64 = 3.0;
 const LEAST: f64 = 0.01;
 /// The same, in tolerances, where one packing says nothing of the scatter.
 const TOLERANCES: f64 = 5.0;
+/// Rounds within so many tolerances of the target say much the same of the next factor: there the
+/// scatter of a round is as large as what the law of proportion misses.
+const NEAR: f64 = 5.0;
 
 /// Slopes of the proportional results.
 #[derive(Debug, Clone)]
@@ -110,7 +113,7 @@ impl Response {
             let changes = self.changes(&wanted);
             for (at, wanted) in wanted.iter().enumerate() {
                 let Some(wanted) = wanted else { continue };
-                let apart = wanted / unknowns[at].tolerance;
+                let apart = wanted / (NEAR * unknowns[at].tolerance);
                 let weight = 1.0 / (1.0 + apart.powi(2));
                 sums[at][0] += weight * (round.factors[at].ln() + changes[at]);
                 sums[at][1] += weight;

@@ -13,6 +13,7 @@
 mod bench;
 mod bulk;
 mod calibration;
+mod calibration_cases;
 mod cells;
 mod dynamic;
 mod laboratory;
@@ -39,9 +40,10 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 28] = [
+const COMMANDS: [(&str, Work); 29] = [
     ("bulk heaps", bulk::heaps),
     ("bulk route", bulk::route),
+    ("calibration cases", calibration_cases::cases),
     ("calibration scatter", calibration::scatter),
     ("calibration sizes", calibration::sizes),
     ("dynamic heights", dynamic::heights),

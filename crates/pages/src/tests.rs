@@ -10,14 +10,15 @@ use crate::bench::root;
 use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
-    COMMANDS, bulk, calibration, dynamic, laboratory, packing, parameters, pressing, process,
-    replacement, round_robin, self_contact, thesis,
+    COMMANDS, bulk, calibration, calibration_cases, dynamic, laboratory, packing, parameters,
+    pressing, process, replacement, round_robin, self_contact, thesis,
 };
 
 fn tables() -> Vec<Table> {
     let mut all = Vec::new();
     all.extend(bulk::tables());
     all.extend(calibration::tables());
+    all.extend(calibration_cases::tables());
     all.extend(dynamic::tables());
     all.extend(laboratory::tables());
     all.extend(packing::tables());
@@ -34,7 +35,12 @@ fn tables() -> Vec<Table> {
 /// The pages, from the root of the repository.
 fn pages() -> Vec<PathBuf> {
     let mut pages = vec![PathBuf::from("README.md")];
-    for folder in ["doc", "doc/inside", "tests/verification"] {
+    for folder in [
+        "doc",
+        "doc/inside",
+        "tests/verification",
+        "tests/calibrations",
+    ] {
         let files = std::fs::read_dir(root().join(folder)).unwrap();
         let names = files.map(|file| Path::new(folder).join(file.unwrap().file_name()));
         pages.extend(names.filter(|name| name.extension().is_some_and(|end| end == "md")));

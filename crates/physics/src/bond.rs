@@ -1,5 +1,6 @@
 //! Elastic bonds between two spheres.
 
+pub mod bearing_section;
 pub mod causes;
 pub mod criteria;
 pub mod damage;

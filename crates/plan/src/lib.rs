@@ -23,6 +23,7 @@ mod quality;
 mod questions;
 mod rules;
 mod sieve_sizes;
+mod size_correction;
 mod stages;
 pub mod time_step;
 mod triggers;
@@ -75,6 +76,7 @@ use self::placement::placed;
 use self::quality::Quality;
 use self::rules::{doubts, rules};
 use self::sieve_sizes::scale_to_sieves;
+use self::size_correction::corrected;
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
@@ -133,7 +135,7 @@ pub fn plan(
 ) -> Result<Plan> {
     let inputs = inputs(scene, &read);
     scale_to_sieves(scene, &mut read);
-    let scene = &fitted(placed(scene, &read)?, &mut read)?;
+    let scene = &corrected(fitted(placed(scene, &read)?, &mut read)?, &read)?;
     let about: BTreeMap<String, About> = (read.iter())
         .map(|(name, body)| (name.clone(), body.about.clone()))
         .collect();

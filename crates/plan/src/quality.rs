@@ -79,7 +79,7 @@ fn named(scene: &Scene, name: &str) -> String {
 enum Calibrated {
     /// Not, or with spheres of another size.
     No,
-    /// With its spheres, in a body of about as many across.
+    /// With its spheres, in a body of about as many across, or corrected for others.
     Here,
     /// With its spheres, in a body of more or fewer across: what that means.
     Elsewhere(String),
@@ -91,6 +91,9 @@ fn calibrated(scene: &Scene, name: &str, body: &Body) -> Calibrated {
         .get(name)
         .and_then(|entry| entry.bond_kind.as_ref());
     let kind = kind.and_then(|kind| scene.bonds.get(kind));
+    if kind.is_some_and(|kind| kind.size_correction) {
+        return Calibrated::Here;
+    }
     let mean_m = body.mean_diameter_m();
     let is_same = kind
         .and_then(|kind| kind.calibrated_diameter_m)
@@ -103,7 +106,7 @@ fn calibrated(scene: &Scene, name: &str, body: &Body) -> Calibrated {
     match both.filter(|(here, there)| (1.0 / here - 1.0 / there).abs() > SAME_ACROSS) {
         None => Calibrated::Here,
         Some((here, there)) => Calibrated::Elsewhere(format!(
-            "{} particles across; its bonds were calibrated in a body of {}: modulus and strength can be 10 % to 20 % off, as bonds near faces bear less; calibrate in this body, or scale the spheres with it",
+            "{} particles across; its bonds were calibrated in a body of {}: modulus and strength can be 10 % to 20 % off, as bonds near faces bear less; write size_correction = true for these bonds, calibrate in this body, or scale the spheres with it",
             significant(here, 3),
             significant(there, 3)
         )),

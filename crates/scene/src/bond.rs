@@ -51,6 +51,8 @@ pub struct BondKind {
     /// `calibrated_across`: spheres across the thinnest part of the body with which they were
     /// calibrated.
     pub calibrated_across: Option<f64>,
+    /// `size_correction`: modulus and strengths are corrected for bodies of other spheres across.
+    pub size_correction: bool,
 }
 
 table_schema! {
@@ -101,6 +103,10 @@ table_schema! {
     /// `dem-run calibrate` writes it. A body with others across is coarse: bonds near its faces
     /// are a larger or smaller part of it.
     number("calibrated_across").positive().otherwise("any");
+    /// In a body of more or fewer spheres across than `calibrated_across`, modulus and strengths are
+    /// those with which it is as stiff and strong: bonds join centres, so that a layer of 0.35
+    /// diameters at each face bears nothing (doc/sphere-size.md).
+    flag("size_correction", false);
 }
 
 plain_table! {
@@ -186,6 +192,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
         contact_beside_bond: table.read("contact_beside_bond")?,
         calibrated_diameter_m: table.read("calibrated_diameter")?,
         calibrated_across: table.read("calibrated_across")?,
+        size_correction: table.read("size_correction")?,
     };
     conflicts::BOND.refuse_key("plasticity", &table)?;
     match kind.model {
@@ -194,6 +201,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
         _ => {}
     }
     conflicts::BOND.refuse_key("formulation = incremental", &table)?;
+    conflicts::BOND.refuse_key("size_correction = true", &table)?;
     Ok(kind)
 }
 
@@ -376,4 +384,5 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     listing.value("contact_beside_bond", &kind.contact_beside_bond);
     listing.value("calibrated_diameter", &kind.calibrated_diameter_m);
     listing.value("calibrated_across", &kind.calibrated_across);
+    listing.value("size_correction", &kind.size_correction);
 }

@@ -127,6 +127,9 @@ pub(super) static BOND: Conflicts = Conflicts { of: "bonds.*", with: "bonds.*", 
         "{} does not go with failure.fracture_energy", "write formulation = \"total\", or remove fracture_energy"),
     Conflict("damping", &["per_mode"], &["no damping.damping_ratio"],
         "{} has no effect without damping_ratio", "add damping_ratio = 0.1, or remove per_mode"),
+    Conflict("", &["size_correction = true"], &["no calibrated_across"],
+        "{} needs calibrated_across, the spheres across with which the bonds were calibrated",
+        "add it, or remove size_correction; dem-run calibrate writes it"),
 ] };
 
 /// Keys that act on a section as a whole, on the elements of a flat joint.

@@ -39,6 +39,7 @@ mod results;
 mod resume;
 mod round_robin;
 mod scenes;
+mod size_correction;
 mod sound;
 mod statics;
 mod stress;

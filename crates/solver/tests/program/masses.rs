@@ -239,6 +239,9 @@ fn a_body_of_few_spheres_is_coarse_unless_it_is_rigid_or_calibrated() {
         why.contains("4.9 particles across; its bonds were calibrated in a body of 8:"),
         "{why}"
     );
+    let correct = ["--set", "bonds.any.size_correction=true"];
+    let corrected = verdict(&[&correct[..], &["--set", &across(8.0)]].concat());
+    assert_eq!(corrected["word"], "sound", "{corrected}");
     let rigid = ["--set", "bodies.row.start_as=clump"];
     assert_eq!(verdict(&rigid)["word"], "sound", "{}", verdict(&rigid));
 }
