@@ -1,9 +1,10 @@
 //! From a study to its runs.
 
 use dem_io::{Diagnostic, Result};
-use dem_scene::study::{Axis, Combine, Design, Find, Setting, Study};
+use dem_scene::study::{Axis, Combine, Design, Find, PACK, Setting, Study};
 
 use super::design::{point_count, points, seeds};
+use super::packings::{Packing, packings};
 
 /// Largest number of processes started without confirmation.
 pub const MOST_UNASKED: u64 = 10_000;
@@ -23,8 +24,21 @@ pub struct Run {
 }
 
 impl Run {
-    /// Its settings of the scene.
-    pub fn settings<'a>(&self, study: &'a Study) -> Vec<&'a Setting> {
+    /// Its settings of the scene; its packings are files of bodies.
+    pub fn settings(&self, study: &Study) -> Vec<Setting> {
+        let all = self.written(study).into_iter();
+        let of_scene = all.filter(|setting| !setting.path.starts_with(PACK));
+        let packings = self.packings(study).into_iter().map(Packing::setting);
+        of_scene.cloned().chain(packings).collect()
+    }
+
+    /// The bodies that are packed for it.
+    pub fn packings(&self, study: &Study) -> Vec<Packing> {
+        packings(study, &self.written(study))
+    }
+
+    /// Its settings as the study has them.
+    fn written<'a>(&self, study: &'a Study) -> Vec<&'a Setting> {
         let chosen = study.axes.iter().zip(&self.choice);
         let chosen = chosen.flat_map(|(axis, &at)| &axis.values[at].settings);
         study.fixed.iter().chain(chosen).collect()

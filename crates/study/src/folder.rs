@@ -13,6 +13,7 @@ use dem_scene::study::{Average, DesignKind, Setting, Study};
 use serde_json::{Value, json};
 
 use super::jobs::Job;
+use super::packings::PACKINGS;
 
 const IDENTITY: &str = "study.json";
 const RUNS: &str = "runs";
@@ -117,6 +118,11 @@ impl SweepFolder {
             let name = path.file_name().and_then(|name| name.to_str());
             let is_table = name.is_some_and(|name| TABLES.contains(&name));
             if is_plain_file(&path) && (is_table || (is_svg(&path) && is_plot_file(&path))) {
+                fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
+            }
+        }
+        for path in entries(&self.path.join(PACKINGS)).unwrap_or_default() {
+            if is_plain_file(&path) && path.extension().is_some_and(|ending| ending == "vtp") {
                 fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
             }
         }
@@ -290,6 +296,13 @@ fn identity(study: &Study, scene_text: &str) -> Value {
             Average::Mean => looked_for.into(),
             Average::Median => format!("{looked_for} median").into(),
         };
+    }
+    if !study.packs.is_empty() {
+        let packs = study.packs.iter();
+        let packs: Vec<_> = packs
+            .map(|pack| (&pack.body, pack.arguments(&[])))
+            .collect();
+        identity["[pack]"] = json!(packs);
     }
     // More trajectories continue a design.
     if let Some(design) = &study.design {

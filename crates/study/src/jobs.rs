@@ -154,7 +154,7 @@ pub fn scene_arguments(study: &Study, run: &Run) -> Vec<String> {
             }
             None => {
                 arguments.push("--set".to_owned());
-                arguments.push(override_text(setting));
+                arguments.push(override_text(&setting));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! A sweep: a scene is run with many settings, each in a process of its own, to see the response of
 //! a measure, or to compare error with run time.
 //!
-//! Study -> [`expand`] runs -> [`jobs`] processes with a folder each -> [`collect`] their
+//! Study -> [`expand`] runs, with [`packings`] of their own -> [`jobs`] processes with a folder each -> [`collect`] their
 //! outcomes -> [`response`]s; `judge` errors (of distributions: [`masses`], of tests: [`curves`])
 //! -> `table` medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s and
 //! [`response_plot`]s, [`want`] the fastest run that is accurate enough. [`search`] adds points to
@@ -27,6 +27,7 @@ pub mod morris;
 pub mod one_at_a_time;
 pub(crate) mod order;
 pub mod outcome;
+pub mod packings;
 pub mod page;
 pub mod plot;
 pub mod ranking;

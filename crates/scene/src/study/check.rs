@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::contents::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
+use super::contents::{BODY, MeasureOf, PACK, Pieces, Reference, Setting, Study};
 use super::values::in_si;
 use crate::blame::guilty;
 use crate::measure::Measure;
@@ -26,7 +26,7 @@ pub fn scene_with<'a>(
     let document = Document::parse(&name, text)?;
     let root = Table::root(&document, &SCENE)?;
     let (mut overrides, mut places, mut files) = (Vec::new(), Vec::new(), Vec::new());
-    for setting in settings {
+    for setting in settings.filter(|setting| !setting.path.starts_with(PACK)) {
         match setting.path.strip_prefix(BODY) {
             Some(body) => files.push((body, setting)),
             None => {
@@ -56,7 +56,9 @@ pub fn scene_with<'a>(
         let path = PathBuf::from(&setting.value);
         let parts = dem_io::body::files::body_files(&path);
         let parts = parts.map_err(|error| error.within(&setting.place))?;
-        if let Some(missing) = parts.iter().find(|part| !part.exists()) {
+        // It is made before the run.
+        let is_packed = study.packs.iter().any(|pack| pack.body == body);
+        if !is_packed && let Some(missing) = parts.iter().find(|part| !part.exists()) {
             return Err(Diagnostic::input(
                 &setting.place,
                 format!("there is no file {}", missing.display()),

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::pack::Pack;
 use crate::schema::Word;
 
 /// Version of the study format.
@@ -11,6 +12,8 @@ pub const STUDY_VERSION: u64 = 1;
 
 /// Prefix of a path that stands for the file of a body, as in `--body NAME=FILE`.
 pub const BODY: &str = "body.";
+/// Prefix of a path that stands for an option of `dem-pack`: `pack.NAME.OPTION`.
+pub const PACK: &str = "pack.";
 
 /// A complete study.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +48,10 @@ pub struct Study {
     pub statistic: Average,
     /// `[find]`
     pub find: Option<Find>,
+    /// `[pack.NAME]`: bodies that are packed anew.
+    pub packs: Vec<Pack>,
+    /// The folder of their files.
+    pub packings: PathBuf,
     /// `[design]`
     pub design: Option<Design>,
     /// `series` of `[page]`: the axis whose values are distinguished by colour; the first without
@@ -195,7 +202,7 @@ pub enum Combine {
 /// A value of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
-    /// Path in the scene, or [`BODY`] and a name.
+    /// Path in the scene, [`BODY`] and a name, or [`PACK`], a name and an option.
     pub path: String,
     /// As TOML; for a body, the name of a file, resolved against the folder of the study.
     pub value: String,

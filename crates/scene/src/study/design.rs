@@ -1,7 +1,7 @@
 //! `[design]`: the ranges in which parameters move to show which of them matter, and in which runs.
 
 use super::contents::{
-    Axis, AxisValue, Design, DesignKind, DesignRange, Reference, Study, StudyMeasure,
+    Axis, AxisValue, BODY, Design, DesignKind, DesignRange, PACK, Reference, Study, StudyMeasure,
 };
 use super::keys::{DESIGN_KINDS, DESIGN_RANGE, SEED, SPACINGS};
 use super::values::{in_si, named, point, rounded, setting};
@@ -296,7 +296,10 @@ impl Study {
         if self.design.as_ref().is_none_or(is_settled) {
             return Ok(());
         }
-        let set: Vec<String> = self.fixed.iter().map(super::check::override_text).collect();
+        let is_of_scene =
+            |s: &&super::contents::Setting| !s.path.starts_with(PACK) && !s.path.starts_with(BODY);
+        let of_scene = self.fixed.iter().filter(is_of_scene);
+        let set: Vec<String> = of_scene.map(super::check::override_text).collect();
         let name = self.scene.display().to_string();
         // What is wrong with it is said when the scenes of all runs are checked.
         let Ok((document, _)) = document_of(scene, &name, &set) else {

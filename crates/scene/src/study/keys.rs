@@ -43,23 +43,35 @@ table_schema! {
     /// `grid`: every combination of values; `paired`: the first with the first, the second with the
     /// second.
     word::<Combine>("combine", "grid");
-    /// Settings of all runs: paths of the scene as `--set` takes them, or `body.NAME` for the file
-    /// of a body.
+    /// Settings of all runs: paths of the scene as `--set` takes them, `body.NAME` for the file of a
+    /// body, or `pack.NAME.OPTION` for an option of `dem-pack`.
     new("set", Kind::Named("\"TABLE.KEY\"", &ANYTHING));
     /// Settings that vary: paths as in `[set]`, each with its values.
     new("vary", Kind::Named("\"TABLE.KEY\"", &SERIES));
     /// Paths that change together along one axis, with lists of equal length.
     new("together", Kind::Named("NAME", &Kind::Open(&TOGETHER, &Kind::List(&ANYTHING))));
+    named("pack", &Kind::Table(&PACKED));
     named("measures", &Kind::Table(&MEASURE)).required("{ NAME = {} }");
     /// Axis over which the responses of measures without a reference are averaged; their scatter is
     /// shown.
-    text("average_over", "an axis").otherwise("`run.seed` if that varies");
+    text("average_over", "an axis").otherwise("`run.seed` or `pack.NAME.seed` if that varies");
     /// What the responses show of the values along the axis of `average_over`: their mean with the
     /// standard deviation, or their median with the range. `[find]` has its own.
     new("statistic", Kind::Word(|| words_of(&AVERAGES))).or_word("mean");
     documented("find", &FIND);
     documented("design", &DESIGN);
     documented("page", &PAGE);
+}
+
+table_schema! {
+    /// The body of this name is packed anew for each combination of its options, in the folder of
+    /// the study; runs with the same options share a packing.
+    pub(super) static PACKED = "[pack.NAME]";
+
+    /// The shape, relative to the folder of the study.
+    text("shape", "a file").required("\"lump.stl\"");
+    /// Options of `dem-pack` that all packings have.
+    text("options", "options of dem-pack, such as \"--overlap 0.25\"");
 }
 
 table_schema! {

@@ -1,12 +1,15 @@
 //! A study from its text.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::contents::{Axis, Combine, Design, Find, STUDY_VERSION, Setting, Study, StudyMeasure};
+use super::contents::{
+    Axis, Combine, Design, Find, PACK, STUDY_VERSION, Setting, Study, StudyMeasure,
+};
 use super::design;
 use super::find;
 use super::keys::{DESIGN, FIND, MOST_REPEATS, PAGE, SEED, STUDY};
 use super::measures::{axis_named, measure};
+use super::pack;
 use super::values::{self, MOST_VALUES, tidy};
 use crate::field::Field;
 use crate::paths::{named_path, text_of};
@@ -51,7 +54,7 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     };
     let page = root.table("page", &PAGE)?;
     let series = page.read_by("series", |field| axis_named(&field, &axes))?;
-    Ok(Study {
+    let study = Study {
         source: source.to_owned(),
         scene: tidy(named_path(&root.need("scene")?, folder)?),
         repeats: root.read_by("repeats", repeats)?,
@@ -65,10 +68,14 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         find,
         design,
         series: series.or_else(|| axes.iter().position(|axis| axis.sizes().is_none())),
+        packs: pack::packs(&root, folder)?,
+        packings: PathBuf::new(),
         fixed,
         axes,
         measures,
-    })
+    };
+    pack::refuse_lost(&study)?;
+    Ok(study)
 }
 
 /// The axes of `[find]` or `[design]`, `[vary]` and `[together]`, at least one, and the design.
@@ -163,7 +170,10 @@ fn repeats(field: Field<'_>) -> Result<u32> {
 /// The axis over which responses are averaged.
 fn average_over(root: &Table<'_>, combine: Combine, axes: &[Axis]) -> Result<Option<usize>> {
     let Some(field) = root.get("average_over") else {
+        let is_packing = |name: &str| name.starts_with(PACK) && name.ends_with(".seed");
+        let of_packings = || axes.iter().position(|axis| is_packing(&axis.name));
         let seeds = axes.iter().position(|axis| axis.name == SEED);
+        let seeds = seeds.or_else(of_packings);
         return Ok(seeds.filter(|_| combine == Combine::Grid));
     };
     if combine == Combine::Paired {

@@ -1,6 +1,7 @@
 //! `dem-run sweep`: a scene with many settings: the response of measures, a value that is searched,
 //! or error and run time.
 
+mod packings;
 mod results;
 
 use std::cell::RefCell;
@@ -14,12 +15,13 @@ use dem_io::text::visible;
 use dem_io::write_target::{need_folder_of, refuse_input};
 use dem_io::{Diagnostic, Result};
 use dem_scene::study::{
-    Combine, MeasureOf, Reference, RunTime, Study, StudyMeasure, read_study, reference_values,
-    rewritten, scene_with, settle_references, value_to_find,
+    Combine, MeasureOf, Reference, RunTime, Setting, Study, StudyMeasure, read_study,
+    reference_values, rewritten, scene_with, settle_references, value_to_find,
 };
 use dem_scene::text_of;
 use dem_terminal::progress::progress_bar;
 
+use self::packings::{checked_packings, make_packings};
 use self::results::{list, say, write_files};
 use super::pool::refuse_threads;
 use super::progress::{Log, Tell, is_logged};
@@ -31,6 +33,7 @@ use dem_study::expand::{MOST_UNASKED, Run, runs};
 use dem_study::folder::{Earlier, SweepFolder};
 use dem_study::jobs::{Job, further_jobs, jobs, refuse_unlistable, work};
 use dem_study::outcome::Outcome;
+use dem_study::packings::PACKINGS;
 use dem_study::search::{SearchResult, Step, next_of};
 use dem_study::sweep_table::SweepTable;
 use dem_study::want::{Want, fastest};
@@ -154,7 +157,9 @@ impl Sweep {
             PathBuf::from(format!("{}-sweep", stem.to_string_lossy()))
         });
         refuse_unlistable_names(options, &study, &path)?;
+        study.packings = path.join(PACKINGS);
         let (references, mut inputs) = checked(&study, &scene_text, &runs)?;
+        inputs.extend(checked_packings(&study, &runs)?);
         let looked_for = match &first {
             Some(first) => value_to_find(&study, first)?,
             None => None,
@@ -228,6 +233,7 @@ impl Sweep {
         if let (Some(best), Some(target)) = (best, &options.write) {
             let run = self.runs.iter().find(|run| run.number == best.number);
             let settings = run.map_or(Vec::new(), |run| run.settings(study));
+            let settings: Vec<&Setting> = settings.iter().collect();
             let text = rewritten(study, &self.scene_text, &settings, target)?;
             write_file(target, |out| out.write_all(text.as_bytes()))?;
         }
@@ -296,6 +302,7 @@ fn outcomes_of(
     if options.list {
         all_jobs.extend(&further);
         all_jobs.retain(|job| !job.is_done(&folder.runs()));
+        make_packings(study, runs_of(all, &all_jobs), true, interrupt)?;
         list(study, all, &all_jobs, folder)?;
         if !all_jobs.is_empty() {
             return Ok(None);
@@ -418,6 +425,7 @@ fn do_what_is_left(
     let todo: Vec<Job> = (jobs.iter().copied())
         .filter(|job| !job.is_done(&runs))
         .collect();
+    make_packings(study, runs_of(all, &todo), options.quiet, interrupt)?;
     let template = "sweep [{bar:40}] {pos}/{len} runs  {eta} left";
     let bar = progress_bar(options.quiet, todo.len(), template);
     let is_logged = is_logged(options.quiet);
@@ -442,6 +450,11 @@ fn do_what_is_left(
     worked
 }
 
+/// The runs of some jobs.
+fn runs_of<'a>(all: &'a [Run], jobs: &[Job]) -> impl Iterator<Item = &'a Run> {
+    jobs.iter().filter_map(|job| Some(&all[job.index(all)?]))
+}
+
 /// Reads the scene of every run, so that errors appear before hours are spent. Returns the
 /// reference of each measure, if known, and the files that the scenes read. If there are very many
 /// runs, reads one for each value.
@@ -457,7 +470,7 @@ fn checked(
     let mut files = BTreeSet::new();
     for run in all.iter().filter(|run| !are_many || differs_once(run)) {
         let settings = run.settings(study);
-        let scene = scene_with(study, scene_text, settings.into_iter())?;
+        let scene = scene_with(study, scene_text, settings.iter())?;
         let of_run = reference_values(study, &scene)?;
         if values.is_empty() {
             values = of_run;

@@ -4,6 +4,7 @@ mod curves;
 mod designs;
 mod failed;
 mod lists;
+mod packings;
 mod pieces;
 mod responses;
 mod safety;

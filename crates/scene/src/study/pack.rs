@@ -1,0 +1,109 @@
+//! `[pack.NAME]`: bodies that a study packs itself, with options of `dem-pack` that may vary.
+
+use std::path::{Path, PathBuf};
+
+use super::contents::{BODY, PACK, Setting, Study};
+use super::keys::PACKED;
+use super::values::tidy;
+use crate::names::suggestion;
+use crate::table::Table;
+use dem_io::diagnostic::{Diagnostic, Result};
+
+/// A body that is packed anew for each combination of its options.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pack {
+    /// Name of the body in the scene.
+    pub body: String,
+    /// `shape`, resolved against the folder of the study.
+    pub shape: PathBuf,
+    /// `options` of `dem-pack`, word by word.
+    pub options: Vec<String>,
+    /// Its place in the study.
+    pub place: String,
+}
+
+impl Pack {
+    /// The arguments of `dem-pack` with the options among these settings.
+    pub fn arguments(&self, settings: &[&Setting]) -> Vec<String> {
+        let mut words = vec![self.shape.display().to_string()];
+        words.extend(self.options.iter().cloned());
+        let own = format!("{PACK}{}.", self.body);
+        let options = settings.iter().filter_map(|setting| {
+            let option = setting.path.strip_prefix(&own)?;
+            // Of "8 mm", as a range of a study writes it, 8mm.
+            let value = setting.value.replace(['"', ' '], "");
+            Some(format!("--{option}={value}"))
+        });
+        words.extend(options);
+        words
+    }
+}
+
+/// The bodies that are packed.
+pub(super) fn packs(root: &Table<'_>, folder: &Path) -> Result<Vec<Pack>> {
+    let read = |(body, field): (String, crate::field::Field<'_>)| {
+        let table = Table::of(&field, &PACKED)?;
+        let shape = crate::paths::named_path(&table.need("shape")?, folder)?;
+        let options: Option<String> = table.read("options")?;
+        Ok(Pack {
+            body,
+            shape: tidy(shape),
+            options: (options.unwrap_or_default().split_whitespace())
+                .map(str::to_owned)
+                .collect(),
+            place: field.document.place(field.node.origin),
+        })
+    };
+    root.named("pack")?.into_iter().map(read).collect()
+}
+
+/// Refuses options of bodies that are not packed, options that are given twice, and files of bodies
+/// that are.
+pub(super) fn refuse_lost(study: &Study) -> Result<()> {
+    let varied = study.axes.iter().flat_map(|axis| &axis.values);
+    let varied = varied.flat_map(|value| &value.settings);
+    for setting in study.fixed.iter().chain(varied) {
+        if let Some(body) = setting.path.strip_prefix(BODY)
+            && study.packs.iter().any(|pack| pack.body == body)
+        {
+            let problem = format!(
+                "{} is the file of a body that [pack.{body}] packs",
+                setting.path
+            );
+            return Err(Diagnostic::input(
+                &setting.place,
+                problem,
+                "remove one of the two",
+            ));
+        }
+        let Some(path) = setting.path.strip_prefix(PACK) else {
+            continue;
+        };
+        let (body, option) = path.split_once('.').unwrap_or((path, ""));
+        let names = || study.packs.iter().map(|pack| pack.body.as_str());
+        let Some(pack) = study.packs.iter().find(|pack| pack.body == body) else {
+            let problem = format!("{}: there is no [pack.{body}]", setting.path);
+            return Err(Diagnostic::input(
+                &setting.place,
+                problem,
+                suggestion(body, names()),
+            ));
+        };
+        if option.is_empty() {
+            let problem = format!("{} names no option of dem-pack", setting.path);
+            let remedy = format!("write \"{PACK}{body}.seed\", say");
+            return Err(Diagnostic::input(&setting.place, problem, remedy));
+        }
+        let written = format!("--{option}");
+        let is_same = |word: &String| word.split('=').next() == Some(written.as_str());
+        if pack.options.iter().any(is_same) {
+            let problem = format!("{written} is among the options of [pack.{body}] as well");
+            return Err(Diagnostic::input(
+                &setting.place,
+                problem,
+                "remove it there",
+            ));
+        }
+    }
+    Ok(())
+}
