@@ -21,6 +21,9 @@ const TOLERANCES: f64 = 5.0;
 /// Rounds within so many tolerances of the target say much the same of the next factor: there the
 /// scatter of a round is as large as what the law of proportion misses.
 const NEAR: f64 = 5.0;
+/// Weight of a round beside that of the next one: a packing that fails at another place than before
+/// makes earlier rounds say something else.
+const EARLIER: f64 = 0.5;
 
 /// Slopes of the proportional results.
 #[derive(Debug, Clone)]
@@ -98,12 +101,13 @@ impl Response {
         changes
     }
 
-    /// Factors with which proportional results are met: the mean of what the rounds say, those near
-    /// the target the most, as strengths scatter from round to round. None: not a proportional
-    /// result, or no round has it.
+    /// Factors with which proportional results are met: the mean of what the rounds say, the last
+    /// and those near the target the most, as strengths scatter from round to round. None: not a
+    /// proportional result, or no round has it.
     pub(crate) fn factors(&self, unknowns: &[Unknown], rounds: &[Round]) -> Vec<Option<f64>> {
         let mut sums = vec![[0.0; 2]; unknowns.len()];
         for round in rounds {
+            sums.iter_mut().flatten().for_each(|sum| *sum *= EARLIER);
             let wanted: Vec<Option<f64>> = (unknowns.iter().enumerate())
                 .map(|(at, unknown)| {
                     let mean = round.mean(at).filter(|_| unknown.is_proportional)?;

@@ -300,6 +300,11 @@ fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
             true => summary.to_string(),
             false => summary.short(),
         };
+        // The error that follows says it.
+        if let Some(problem) = &outcome.problem {
+            let warning = format!("warning      {}\n", visible(&problem.to_string()));
+            text = text.replace(&warning, "");
+        }
         if summary.results.is_none() {
             text += "no files written: add --output FOLDER to keep the results\n";
         }

@@ -271,6 +271,10 @@ fn an_interrupted_run_leaves_its_tables() {
     for part in ["fragments ", "verdict "] {
         assert!(printed.contains(part), "{part}: {printed}");
     }
+    // Once, as the error.
+    assert!(!printed.contains("interrupted"), "{printed}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(said.matches("interrupted at ").count(), 1, "{said}");
     for name in [
         "flow.csv",
         "distribution.csv",
