@@ -18,11 +18,8 @@ const ABOVE_SCATTER: f64 = 3.0;
 const LEAST: f64 = 0.01;
 /// The same, in tolerances, where one packing says nothing of the scatter.
 const TOLERANCES: f64 = 5.0;
-/// Rounds within so many tolerances of the target say much the same of the next factor: there the
-/// scatter of a round is as large as what the law of proportion misses.
-const NEAR: f64 = 5.0;
-/// Weight of a round beside that of the next one: a packing that fails at another place than before
-/// makes earlier rounds say something else.
+/// Weight of a round beside that of the next one as long as all results lie on one side of the
+/// target: what earlier rounds say has not led there.
 const EARLIER: f64 = 0.5;
 
 /// Slopes of the proportional results.
@@ -101,30 +98,39 @@ impl Response {
         changes
     }
 
-    /// Factors with which proportional results are met: the mean of what the rounds say, the last
-    /// and those near the target the most, as strengths scatter from round to round. None: not a
-    /// proportional result, or no round has it.
+    /// Factors with which proportional results are met: the mean of what the rounds say, those near
+    /// the target the most, as strengths scatter from round to round; also the last rounds more, as
+    /// long as all lie on one side of the target. None: not a proportional result, or no round has
+    /// it.
     pub(crate) fn factors(&self, unknowns: &[Unknown], rounds: &[Round]) -> Vec<Option<f64>> {
-        let mut sums = vec![[0.0; 2]; unknowns.len()];
-        for round in rounds {
-            sums.iter_mut().flatten().for_each(|sum| *sum *= EARLIER);
-            let wanted: Vec<Option<f64>> = (unknowns.iter().enumerate())
+        let wanted = |round: &Round| -> Vec<Option<f64>> {
+            let unknowns = unknowns.iter().enumerate();
+            unknowns
                 .map(|(at, unknown)| {
                     let mean = round.mean(at).filter(|_| unknown.is_proportional)?;
                     Some((unknown.target / mean).ln())
                 })
-                .collect();
-            let changes = self.changes(&wanted);
-            for (at, wanted) in wanted.iter().enumerate() {
-                let Some(wanted) = wanted else { continue };
-                let apart = wanted / (NEAR * unknowns[at].tolerance);
-                let weight = 1.0 / (1.0 + apart.powi(2));
-                sums[at][0] += weight * (round.factors[at].ln() + changes[at]);
-                sums[at][1] += weight;
+                .collect()
+        };
+        let wanted: Vec<Vec<Option<f64>>> = rounds.iter().map(wanted).collect();
+        let changes: Vec<Vec<f64>> = wanted.iter().map(|wanted| self.changes(wanted)).collect();
+        let factor = |(at, unknown): (usize, &Unknown)| {
+            let of_rounds = || wanted.iter().filter_map(|of_round| of_round[at]);
+            let is_one_sided =
+                of_rounds().all(|wanted| wanted > 0.0) || of_rounds().all(|wanted| wanted < 0.0);
+            let earlier = if is_one_sided { EARLIER } else { 1.0 };
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for (which, round) in rounds.iter().enumerate() {
+                let Some(wanted) = wanted[which][at] else {
+                    continue;
+                };
+                let weight = 1.0 / (1.0 + (wanted / unknown.tolerance).powi(2));
+                let says = round.factors[at].ln() + changes[which][at];
+                (sum, weights) = (earlier * sum + weight * says, earlier * weights + weight);
             }
-        }
-        let mean = |[sum, weight]: [f64; 2]| (weight > 0.0).then(|| (sum / weight).exp());
-        sums.into_iter().map(mean).collect()
+            (weights > 0.0).then(|| (sum / weights).exp())
+        };
+        unknowns.iter().enumerate().map(factor).collect()
     }
 }
 
