@@ -30,6 +30,7 @@ pub mod law;
 pub mod liquid_bridge;
 mod normal;
 pub mod pair_parameters;
+pub mod patch_book;
 pub mod relaxation;
 pub mod restitution;
 pub mod rolling;
