@@ -24,6 +24,7 @@
 //! to that.
 
 pub mod assembly;
+pub mod history;
 mod jumps;
 pub mod kinematics;
 pub mod law;

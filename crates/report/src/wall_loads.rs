@@ -53,6 +53,8 @@ impl WallQuantity {
 
 /// Number of colours: patches of one colour are drawn together.
 const COLOURS: usize = 64;
+/// Most triangles of which borders and folds are drawn: to find them takes a while.
+const MOST_WITH_LINES: usize = 200_000;
 
 /// The patches as triangles, where the walls stood at the start.
 struct Cells {
@@ -121,7 +123,11 @@ fn surfaces(cells: &Cells, highest: f64) -> Vec<Surface> {
         });
     }
     let vertices_m: Vec<[f64; 3]> = cells.triangles_m.iter().flatten().copied().collect();
-    let triangles = (0..cells.triangles_m.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+    let lined = match cells.triangles_m.len() {
+        count if count <= MOST_WITH_LINES => count as u32,
+        _ => 0,
+    };
+    let triangles = (0..lined).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
     let lines = Surface {
         opacity: 1.0,
         ..Surface::mesh(&vertices_m, &triangles.collect::<Vec<_>>())

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::renumbered::{NewNumbers, Renumbered};
 
-use super::contacts::ContactHistory;
+pub use dem_physics::contact::history::WallContact;
 use dem_physics::contact::law::ContactKind;
 use dem_physics::contact::patch_book::{WallBook, WallBookModel};
 use dem_physics::geometry::{Bounds, Frame, Shape};
@@ -164,19 +164,6 @@ impl Wall {
     pub fn kind(&self, material: u8) -> &ContactKind {
         &self.model.kinds[usize::from(self.model.kind_of[usize::from(material)])]
     }
-}
-
-/// A contact between a particle and a wall, with its history.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WallContact {
-    /// Number of the particle.
-    pub particle: u32,
-    /// Feature of the wall: see [`dem_physics::geometry::Touch`].
-    pub feature: u32,
-    /// Unit vector from the wall to the centre. Length 3.
-    pub normal: [f64; 3],
-    /// Displacements, overlap and origin.
-    pub history: ContactHistory,
 }
 
 impl Renumbered for Wall {

@@ -358,7 +358,7 @@ mod tests {
     fn assert_runs_around(patch: &Patch) {
         let [a, b, c] = [0, 1, 2].map(|k| Vector3::from(patch.corners_m[k]));
         assert!(
-            (b - a).cross(&(c - b)).dot(&patch.normal.into()) > 0.0,
+            (b - a).cross(&(c - b)).dot(&Vector3::from(patch.normal)) > 0.0,
             "{patch:?}"
         );
     }
