@@ -178,7 +178,8 @@ pub(crate) fn wall_wrenches(
         place.meet(&meetings.all, &mut meetings.met);
     };
     for_each(meetings, near_walls(walls), meet);
-    book_patches(walls, (contacts, particles), meetings, [dt, kick_s]);
+    let force_n = |wall: &Wall, old: &WallContact| touch_force_n(wall, contacts, particles, old);
+    book_patches(walls, (particles, &force_n), meetings, [dt, kick_s]);
     for wall in walls.iter_mut() {
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();

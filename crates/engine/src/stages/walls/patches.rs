@@ -3,19 +3,20 @@
 use nalgebra::Vector3;
 
 use super::motion::surface_velocity_m_s;
-use super::touch_force_n;
-use crate::state::contacts::Contacts;
 use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::Particles;
 use crate::state::sleep::FrozenWallContact;
-use crate::state::walls::Wall;
+use crate::state::walls::{Wall, WallContact};
 use dem_physics::contact::patch_book::PatchStep;
 
+/// Force of a wall on a particle in a recorded contact, N.
+type ForceN<'a> = &'a dyn Fn(&Wall, &WallContact) -> Vector3<f64>;
+
 /// Books the contacts at these meetings after a step of `dt`, s, before a kick of `kick_s`, s. The
-/// walls still have the contacts of the step before.
+/// walls still have the contacts of the step before, with these forces.
 pub(super) fn book_patches(
     walls: &mut [Wall],
-    (contacts, particles): (&Contacts, &Particles),
+    (particles, force_n): (&Particles, ForceN<'_>),
     meetings: &[Meetings],
     [dt, kick_s]: [f64; 2],
 ) {
@@ -25,7 +26,7 @@ pub(super) fn book_patches(
             continue;
         };
         for pair @ (meeting, _) in some.all.iter().zip(&some.met) {
-            let step = step(walls, number, (contacts, particles), pair, dt);
+            let step = step(walls, number, (particles, force_n), pair, dt);
             let centre = particles.poses[meeting.particle as usize].place();
             let foot = centre + Vector3::from(meeting.there.normal) * meeting.there.distance_m;
             let patch = patch_at(&walls[number], foot, meeting.there.normal);
@@ -48,7 +49,7 @@ fn patch_at(wall: &Wall, point: Vector3<f64>, inward: [f64; 3]) -> u64 {
 fn step(
     walls: &[Wall],
     number: usize,
-    (contacts, particles): (&Contacts, &Particles),
+    (particles, force_n): (&Particles, ForceN<'_>),
     (meeting, met): (&Meeting, &Met),
     dt: f64,
 ) -> PatchStep {
@@ -56,7 +57,7 @@ fn step(
     let old_wall = meeting.old_wall.map_or(wall, |old| &walls[old as usize]);
     let old = meeting.old.map(|old| &old_wall.touching[old as usize]);
     let [before_n, overlap_before_m] = old.map_or([0.0; 2], |old| {
-        let force = touch_force_n(old_wall, contacts, particles, old);
+        let force = force_n(old_wall, old);
         [
             Vector3::from(old.normal).dot(&force),
             old.history.overlap_m(),
