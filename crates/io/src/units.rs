@@ -45,7 +45,7 @@ macro_rules! dimensions {
         )+
 
         /// All dimensions.
-        pub const DIMENSIONS: [Dimension; 25] = [$($dimension),+];
+        pub const DIMENSIONS: [Dimension; 26] = [$($dimension),+];
     };
 }
 
@@ -174,6 +174,11 @@ dimensions! {
     /// Force over velocity, N s/m.
     VISCOUS_DAMPING: "damping coefficient" in "N s/m", as "10 N s/m" [
         "mN s/m": 1e-3, "N s/m": 1.0, "N s/mm": 1e3, "kN s/m": 1e3,
+    ]
+
+    /// Volume worn off over normal force and sliding distance, 1/Pa.
+    WEAR_CONSTANT: "wear constant" in "1/Pa", as "1e-13 1/Pa" [
+        "1/Pa": 1.0, "1/MPa": 1e-6, "1/GPa": 1e-9, "m2/N": 1.0, "mm2/N": 1e-6, "mm3/(N m)": 1e-9,
     ]
 }
 

@@ -24,12 +24,14 @@
 //! to that.
 
 pub mod assembly;
+pub mod history;
 mod jumps;
 pub mod kinematics;
 pub mod law;
 pub mod liquid_bridge;
 mod normal;
 pub mod pair_parameters;
+pub mod patch_book;
 pub mod relaxation;
 pub mod restitution;
 pub mod rolling;

@@ -13,6 +13,7 @@ pub mod cylinder;
 pub mod frame;
 pub mod mesh;
 pub mod one_surface;
+pub mod patches;
 pub mod plane;
 pub mod region;
 pub mod solid_box;

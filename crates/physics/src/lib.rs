@@ -13,3 +13,4 @@ pub mod remembered;
 pub mod rigid;
 pub mod rotation;
 pub mod shape;
+pub mod wall_load;

@@ -1,5 +1,6 @@
 //! Walls of a scene at their initial positions.
 
+mod books;
 mod surface;
 
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use dem_engine::state::walls::{Wall, WallContact, WallModel};
 use dem_physics::geometry::{Frame, Mesh, Shape, Touch};
 use dem_physics::rigid::turn;
 
+use self::books::book_model;
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, question_size, surface_warnings};
 
@@ -62,8 +64,10 @@ pub(super) fn place_walls(
         let frame = frame(entry);
         refuse_belt_off_plane(&place, entry, &frame)?;
         let material = kinds.material(&entry.material);
+        let book = book_model(entry, &shape, &frame, state);
         let model = WallModel {
             name: name.clone(),
+            book: book.map_err(|error| error.within(&place))?,
             shape,
             motion: entry.motion.clone(),
             surface_velocity_m_s: entry.surface_velocity_m_s,

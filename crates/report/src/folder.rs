@@ -43,6 +43,11 @@ impl Folder {
         })
     }
 
+    /// Where it is.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Its frames and their times, s.
     pub(crate) fn frames(&self) -> &[(PathBuf, f64)] {
         &self.frames

@@ -11,6 +11,7 @@ mod home;
 pub mod picture;
 mod sections;
 mod view;
+pub mod wall_loads;
 
 use std::path::Path;
 
@@ -20,7 +21,9 @@ use dem_results::{Summary, from_json};
 use serde_json::Value;
 
 use folder::Folder;
-use sections::{add_curves, add_inputs, add_results, add_test, add_time, add_verdict};
+use sections::{
+    add_curves, add_inputs, add_results, add_test, add_time, add_verdict, add_wall_loads,
+};
 
 /// The page of a finished run from its folder and its summary (the text of `summary.json`). Refuses
 /// another summary, and missing or damaged frames.
@@ -42,6 +45,7 @@ pub fn report(folder: &Path, summary: &str) -> Result<String> {
     if summary.has_results() {
         add_test(&mut page, &summary);
         add_results(&mut page, &summary, &folder);
+        add_wall_loads(&mut page, &summary, &folder)?;
         add_curves(&mut page, &folder)?;
     }
     add_inputs(&mut page, &summary, &folder);

@@ -5,6 +5,7 @@ mod outlets;
 mod percent;
 mod results;
 mod time;
+mod wall_loads;
 
 use dem_io::Result;
 use dem_io::text::counted;
@@ -18,6 +19,7 @@ use crate::folder::Folder;
 pub(crate) use inputs::add_inputs;
 pub(crate) use results::{add_results, add_test};
 pub(crate) use time::add_time;
+pub(crate) use wall_loads::add_wall_loads;
 
 /// Plots that come first, in this order.
 const FIRST_PLOTS: [&str; 13] = [

@@ -19,6 +19,7 @@ pub(crate) mod pictures;
 pub(crate) mod plot_file;
 pub(crate) mod series;
 pub mod summary;
+pub(crate) mod wall_loads;
 pub(crate) mod walls;
 
 pub use arrays::{Array, Arrays, read_all_arrays, read_arrays};
@@ -34,4 +35,5 @@ pub use pictures::PictureFiles;
 pub use plot_file::{is_plot_file, write_plot_file};
 pub use series::{Series, SeriesFile, read_series};
 pub use summary::{Balance, Summary};
+pub use wall_loads::{WallPatch, write_wall_load_cells, write_wall_loads};
 pub use walls::{WallFrame, WallTriangles};

@@ -19,6 +19,7 @@ use super::rigid_hits::RigidHits;
 use crate::end::summary_parts::{part_error_above, population_summary, sleep_summary};
 use crate::last_files::flows::body_flows;
 use crate::last_files::fragments::fragment_summary;
+use crate::last_files::wall_loads::wall_load_summary;
 use crate::machine::{machine, processor_time_s};
 use dem_engine::state::clusters::fragments as fragments_of;
 use dem_engine::state::clusters::fragments::Fragment;
@@ -197,6 +198,7 @@ impl Run<'_> {
             population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
             taken_in: progress.monitors.taken.summary(state),
+            wall_loads: wall_load_summary(state),
             sleep: state.sleep.as_ref().map(sleep_summary),
             steps: state.steps,
             time_step_s: state.time_step_s,

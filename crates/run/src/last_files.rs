@@ -8,6 +8,7 @@ mod last_state;
 pub(crate) mod plots;
 pub mod strengthening;
 mod tables;
+pub(crate) mod wall_loads;
 
 use std::path::{Path, PathBuf};
 
@@ -35,10 +36,11 @@ type WriteTable = fn(&LastState<'_>) -> Result<Vec<PathBuf>>;
 
 /// All tables and plots of the last state: that of the checkpoint, half a step later, would change
 /// them.
-const TABLES: [WriteTable; 4] = [
+const TABLES: [WriteTable; 5] = [
     tables::fragments,
     tables::flow,
     tables::mixing,
+    wall_loads::wall_loads,
     strengthening_plot,
 ];
 

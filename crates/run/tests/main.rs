@@ -29,5 +29,6 @@ mod sleep;
 mod start;
 mod statics;
 mod step;
+mod wall_loads;
 mod walls;
 mod zones;

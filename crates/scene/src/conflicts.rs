@@ -52,6 +52,7 @@ pub(super) static STATIC: Conflicts = Conflicts { of: "", with: "", rows: &[
     Conflict("", &["initial", "replacement", "inlets", "outlets", "sleep"], &[STATICS], UNAVAILABLE, NOT_STATIC),
     Conflict("", &["contacts", "walls"], &[STATICS, "no test"], UNAVAILABLE, NOT_STATIC),
     Conflict("", &["loads"], &[STATICS, "test"], IDLE_IN_TEST, NOT_STATIC),
+    Conflict("walls.*", &["loads"], &[STATICS], IDLE, NOT_STATIC),
     Conflict("run", &["impact_accuracy"], &[STATICS], IDLE, NOT_STATIC),
     Conflict("run", &["gravity"], &[STATICS, "test"], IDLE_IN_TEST, NOT_STATIC),
     Conflict("supports.*", &["displacement", "velocity"], &[STATICS, "test"], IDLE_IN_TEST, NOT_STATIC),

@@ -102,5 +102,5 @@ pub use shape::{BoxShape, CylinderShape, SphereShape};
 pub use sleep::Sleep;
 pub use support::{Hold, Support};
 pub use test::{Bars, Confinement, Gauges, MeasuredReference, NormalStress, Test, Weight};
-pub use wall::{PlaneShape, Wall, WallMotion, WallShape};
+pub use wall::{PlaneShape, Wall, WallLoads, WallMotion, WallShape};
 pub use zone::{Rejoin, Zone};

@@ -1,7 +1,9 @@
 //! `[walls.NAME]`
 
+pub(super) mod loads;
 pub(super) mod motion;
 
+pub use loads::Loads as WallLoads;
 pub use motion::WallMotion;
 
 use std::collections::BTreeMap;
@@ -68,6 +70,8 @@ table_schema! {
     quantity("phase", &ANGLE).or(0.0);
     /// Servo control: the wall moves such that it exerts a given force.
     table("servo", &motion::SERVO);
+    /// Books what contacts do to each patch of the wall, where impacts hit it and where it wears.
+    table("loads", &loads::LOADS).otherwise("not booked");
     RAMP;
     TABLE;
 }
@@ -121,6 +125,8 @@ pub struct Wall {
     /// `surface_velocity`: velocity of a belt's surface, which the shape does not follow, m/s; 0
     /// unless given. Length 3.
     pub surface_velocity_m_s: [f64; 3],
+    /// `loads`: how what contacts do to it is booked. None: it is not.
+    pub loads: Option<WallLoads>,
 }
 
 impl WallShape {
@@ -208,8 +214,9 @@ pub(super) fn read_all(
 
 fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path) -> Result<Wall> {
     let table = Table::of(field, &WALL)?;
+    let (key, shape) = read_shape(&table, folder)?;
     Ok(Wall {
-        shape: read_shape(&table, folder)?,
+        shape,
         material: table
             .need("material")?
             .reference(materials.keys(), "materials")?,
@@ -217,6 +224,7 @@ fn read(field: &Field<'_>, materials: &BTreeMap<String, Material>, folder: &Path
         pivot_m: table.read("pivot")?,
         motion: motion::read(&table)?,
         surface_velocity_m_s: table.read("surface_velocity")?,
+        loads: table.read_by("loads", |field| loads::read(&field, key))?,
     })
 }
 
@@ -227,30 +235,36 @@ pub(super) fn list(wall: &Wall, listing: &mut Listing) {
     listing.value("rotation", &wall.rotation_rad);
     listing.value("surface_velocity", &wall.surface_velocity_m_s);
     motion::list(&wall.motion, listing);
+    if let Some(loads) = &wall.loads {
+        listing.table("loads", &loads::LOADS, |listing| loads.list(listing));
+    }
 }
 
 const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
 
-fn read_shape(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
+/// The key of the shape of a wall, and the shape.
+fn read_shape(wall: &Table<'_>, folder: &Path) -> Result<(&'static str, WallShape)> {
     let one = "a wall has one shape: remove one, or make two walls";
     let Some((key, field)) = wall.at_most_one(&SHAPES, one)? else {
         let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius } or stl = \"plate.stl\"";
         return Err(wall.fault("has no shape", remedy));
     };
     refuse_without_stl(wall, &["unit", "scale"], key)?;
-    match key {
-        "plane" => PlaneShape::read(&Table::of(&field, &PLANE)?).map(WallShape::Plane),
-        "box" => read_box(&field, "less than", |low, high| low < high).map(WallShape::Box),
-        "cylinder" => read_cylinder(&field).map(WallShape::Cylinder),
+    let shape = match key {
+        "plane" => WallShape::Plane(PlaneShape::read(&Table::of(&field, &PLANE)?)?),
+        "box" => WallShape::Box(read_box(&field, "less than", |low, high| low < high)?),
+        "cylinder" => WallShape::Cylinder(read_cylinder(&field)?),
         _ => {
             let (path, unit_m) = stl(&field, wall, folder)?;
-            Ok(WallShape::Stl {
+            let scale = wall.read("scale")?;
+            WallShape::Stl {
                 path,
                 unit_m,
-                scale: wall.read("scale")?,
-            })
+                scale,
+            }
         }
-    }
+    };
+    Ok((key, shape))
 }
 
 fn list_shape(shape: &WallShape, listing: &mut Listing) {

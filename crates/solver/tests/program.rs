@@ -48,6 +48,7 @@ mod threads;
 mod unstable;
 mod verdict;
 mod wall_frames;
+mod wall_loads;
 mod zones;
 
 use std::collections::BTreeMap;

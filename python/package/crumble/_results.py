@@ -158,6 +158,11 @@ class Results:
         return self.table("mixing")
 
     @cached_property
+    def wall_loads(self) -> pd.DataFrame:
+        """`wall_loads.csv`: what contacts have done to each patch of the walls with `loads`."""
+        return self.table("wall_loads")
+
+    @cached_property
     def force_displacement(self) -> pd.DataFrame:
         """`force-displacement.csv`: the curve of a laboratory test."""
         return self.table("force-displacement")

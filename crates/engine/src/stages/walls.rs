@@ -5,6 +5,7 @@ mod driven;
 pub mod joints;
 mod meeting;
 mod motion;
+mod patches;
 
 use nalgebra::Vector3;
 
@@ -14,6 +15,7 @@ pub use self::motion::fastest_point_m_s;
 pub(crate) use self::motion::{
     drift_walls, has_moved, moves, plan_wall_motions, surface_velocity_m_s, will_move,
 };
+use self::patches::{book_patches, book_sleepers};
 use super::stage::{Need, Stage};
 use crate::stages::contacts::forces::{StoredEnergy, StoredForce};
 use crate::state::State;
@@ -31,7 +33,8 @@ use dem_physics::number::Vec3;
 pub const WALLS: Stage = Stage {
     bytes: |state| {
         let of_wall = |wall: &Wall| {
-            size_of_val(wall) + size_of_val(&wall.near[..]) + size_of_val(&wall.touching[..])
+            let book = wall.book.as_ref().map_or(0, |book| book.bytes());
+            size_of_val(wall) + size_of_val(&wall.near[..]) + size_of_val(&wall.touching[..]) + book
         };
         state.walls.iter().map(of_wall).sum()
     },
@@ -58,14 +61,18 @@ pub(crate) fn find_wall_contacts(state: &mut State) -> usize {
 
 /// Adds the wall forces to the wrenches. Returns the number of particles near walls.
 pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
+    let kick_s = state.kick_s();
     if let Some(contacts) = &mut state.contacts {
         wall_wrenches(
             &mut state.walls,
             contacts,
             &mut state.particles,
             &mut state.scratch.meetings,
-            state.previous_time_step_s,
+            [state.previous_time_step_s, kick_s],
         );
+        if let Some(sleep) = &state.sleep {
+            book_sleepers(&mut state.walls, &sleep.touches, [state.time_s, kick_s]);
+        }
         if let Some(clusters) = (state.clusters.as_ref()).filter(|_| contacts.islands.is_open()) {
             let met = state.scratch.meetings[..chunks(&state.walls)].iter();
             for met in met.flat_map(|some| &some.met) {
@@ -147,14 +154,14 @@ pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
     }
 }
 
-/// Adds the wall forces to the wrenches after a step of `dt`, s, and records their reactions on the
-/// walls: at the `meetings` that have been found in this step.
+/// Adds the wall forces to the wrenches after a step of `dt`, s, before a kick of `kick_s`, s, and
+/// records their reactions on the walls: at the `meetings` that have been found in this step.
 pub(crate) fn wall_wrenches(
     walls: &mut [Wall],
     contacts: &mut Contacts,
     particles: &mut Particles,
     meetings: &mut [Meetings],
-    dt: f64,
+    [dt, kick_s]: [f64; 2],
 ) {
     let meetings = &mut meetings[..chunks(walls)];
     let meet = |meetings: &mut Meetings| {
@@ -171,6 +178,8 @@ pub(crate) fn wall_wrenches(
         place.meet(&meetings.all, &mut meetings.met);
     };
     for_each(meetings, near_walls(walls), meet);
+    let force_n = |wall: &Wall, old: &WallContact| touch_force_n(wall, contacts, particles, old);
+    book_patches(walls, (particles, &force_n), meetings, [dt, kick_s]);
     for wall in walls.iter_mut() {
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();

@@ -109,6 +109,8 @@ pub struct FrozenWallContact {
     pub push: WallLoad,
     /// See `push`.
     pub at_s: f64,
+    /// Where the wall touched it at that time, in the wall's frame, m. Length 3.
+    pub foot_m: [f64; 3],
     /// J.
     pub elastic_j: f64,
 }

@@ -7,9 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::renumbered::{NewNumbers, Renumbered};
 
-use super::contacts::ContactHistory;
+pub use dem_physics::contact::history::WallContact;
 use dem_physics::contact::law::ContactKind;
+use dem_physics::contact::patch_book::{WallBook, WallBookModel};
 use dem_physics::geometry::{Bounds, Frame, Shape};
+pub use dem_physics::wall_load::WallLoad;
 
 /// Definition of a wall in the scene.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -26,6 +28,8 @@ pub struct WallModel {
     pub kind_of: Vec<u8>,
     /// Types of contacts.
     pub kinds: Vec<ContactKind>,
+    /// How its loads are booked. None: they are not.
+    pub book: Option<WallBookModel>,
 }
 
 /// A wall of the scene, with its present position and motion.
@@ -60,6 +64,8 @@ pub struct Wall {
     pub pending_j: f64,
     /// Its work on sleeping bodies that ride on it.
     pub ridden: Ridden,
+    /// What contacts have done to its patches. None: not asked for.
+    pub book: Option<Box<WallBook>>,
     /// Distance that the wall may move before its near particles are listed again, m.
     #[serde(skip)]
     pub skin_left_m: f64,
@@ -102,6 +108,8 @@ impl Wall {
 
     /// A wall without contacts.
     pub fn new(model: Arc<WallModel>, frame: Frame) -> Self {
+        let book = model.book.as_ref();
+        let book = book.map(|book| Box::new(WallBook::new(&book.patches, &model.shape)));
         Self {
             model,
             frame,
@@ -117,6 +125,7 @@ impl Wall {
             work_j: 0.0,
             pending_j: 0.0,
             ridden: Ridden::default(),
+            book,
             skin_left_m: 0.0,
             moved_m: 0.0,
             scratch: WallScratch::default(),
@@ -154,49 +163,6 @@ impl Wall {
     /// Contact type with the material of this number, for which there must be one.
     pub fn kind(&self, material: u8) -> &ContactKind {
         &self.model.kinds[usize::from(self.model.kind_of[usize::from(material)])]
-    }
-}
-
-/// A contact between a particle and a wall, with its history.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WallContact {
-    /// Number of the particle.
-    pub particle: u32,
-    /// Feature of the wall: see [`dem_physics::geometry::Touch`].
-    pub feature: u32,
-    /// Unit vector from the wall to the centre. Length 3.
-    pub normal: [f64; 3],
-    /// Displacements, overlap and origin.
-    pub history: ContactHistory,
-}
-
-/// Resultant load of a wall on the particles that touch it.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct WallLoad {
-    /// N.
-    pub force_n: [f64; 3],
-    /// About the wall's pivot, N m.
-    pub torque_n_m: [f64; 3],
-    /// Power supplied by the surface velocity of a belt, W.
-    pub belt_w: f64,
-}
-
-impl WallLoad {
-    /// Adds a force, N, a torque about the pivot, N m, and a power of the belt, W.
-    pub fn add(&mut self, force_n: [f64; 3], torque_n_m: [f64; 3], belt_w: f64) {
-        for k in 0..3 {
-            self.force_n[k] += force_n[k];
-            self.torque_n_m[k] += torque_n_m[k];
-        }
-        self.belt_w += belt_w;
-    }
-
-    /// Power that the wall supplies to the particles while it has this motion, W.
-    pub fn power_w(&self, velocity_m_s: [f64; 3], spin_rad_s: [f64; 3]) -> f64 {
-        let moving: f64 = (0..3)
-            .map(|k| self.force_n[k] * velocity_m_s[k] + self.torque_n_m[k] * spin_rad_s[k])
-            .sum();
-        moving + self.belt_w
     }
 }
 

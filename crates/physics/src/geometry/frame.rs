@@ -54,6 +54,13 @@ impl Frame {
         (self.rotation() * Vector3::from(vector)).into()
     }
 
+    /// A vector in space in the wall's frame.
+    pub fn direction_to_wall(&self, vector: [f64; 3]) -> [f64; 3] {
+        self.rotation()
+            .inverse_transform_vector(&Vector3::from(vector))
+            .into()
+    }
+
     /// A touch found in the wall's frame, in space.
     pub fn touch_to_space(&self, touch: &Touch) -> Touch {
         Touch {

@@ -17,6 +17,8 @@ mod features;
 mod inside;
 mod triangle;
 
+use std::cell::Cell;
+
 use dem_io::boxes::Tree;
 use dem_io::surface::OpenSurface;
 use dem_io::{Diagnostic, Result};
@@ -139,6 +141,26 @@ impl Mesh {
     /// The corners of all triangles, m. Shape n x 3 x 3.
     pub fn corners_m(&self) -> impl Iterator<Item = [[f64; 3]; 3]> {
         self.triangles.iter().map(|t| t.corners.map(Into::into))
+    }
+
+    /// The corners of a triangle, m. Shape 3 x 3. Numbers are those of [`Self::corners_m`].
+    pub fn triangle_m(&self, number: usize) -> [[f64; 3]; 3] {
+        self.triangles[number].corners.map(Into::into)
+    }
+
+    /// Number of the triangle that is nearest to a point, m; of several the first.
+    pub fn nearest_triangle(&self, point: [f64; 3]) -> u32 {
+        let p = Vector3::from(point);
+        let nearest = Cell::new((f64::INFINITY, 0));
+        self.tree.nearest(&point, |t| {
+            let distance_m = self.nearest(t, &p).distance_m;
+            let (least_m, first) = nearest.get();
+            if distance_m < least_m || (distance_m == least_m && t < first) {
+                nearest.set((distance_m, t));
+            }
+            distance_m
+        });
+        nearest.get().1
     }
 
     /// The smallest box around it.

@@ -29,6 +29,10 @@ pub const DISTRIBUTION: &str = "distribution.csv";
 pub const FLOW: &str = "flow.csv";
 /// The cells of mixtures.
 pub const MIXING: &str = "mixing.csv";
+/// What contacts have done to the patches of walls.
+pub const WALL_LOADS: &str = "wall_loads.csv";
+/// The same for ParaView.
+pub const WALL_LOAD_CELLS: &str = "wall_loads.vtp";
 /// Summary.
 pub const SUMMARY: &str = "summary.json";
 /// The page of the run.
@@ -48,7 +52,7 @@ pub const CHECKPOINT: &str = "checkpoint.dem";
 /// The data written at the end of a run, kept until all files are complete.
 pub const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 19] = [
+pub(super) const SINGLE_FILES: [&str; 21] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -58,6 +62,8 @@ pub(super) const SINGLE_FILES: [&str; 19] = [
     DISTRIBUTION,
     FLOW,
     MIXING,
+    WALL_LOADS,
+    WALL_LOAD_CELLS,
     SUMMARY,
     REPORT,
     TEST_CURVE,

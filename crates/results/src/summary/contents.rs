@@ -16,7 +16,8 @@ use super::equilibrium::EquilibriumSummary;
 use super::inputs::Inputs;
 use super::measured::Measured;
 use super::parts::{
-    AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary, TakenIn,
+    AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary,
+    TakenIn, WallLoadSummary,
 };
 use super::sizes::{RESOLVED_DIAMETERS, SizeSummary, Sizes};
 use crate::json::from_json;
@@ -101,6 +102,9 @@ pub struct Summary {
     /// Energies that the particles of bodies with daughters took in, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub taken_in: BTreeMap<String, TakenIn>,
+    /// What contacts have done to each wall with `loads`, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub wall_loads: BTreeMap<String, WallLoadSummary>,
     /// Sleeping bodies, if any can sleep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep: Option<SleepSummary>,

@@ -132,6 +132,34 @@ pub struct TakenIn {
     pub needed_j_kg: f64,
 }
 
+/// What contacts have done to a wall: sums over its patches.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct WallLoadSummary {
+    /// Number of patches; of a plane, of those touched.
+    pub patches: usize,
+    /// Those that have been touched.
+    pub touched: usize,
+    /// Impulse on the wall, N s, along axes that turn with it, as at the start. Length 3.
+    pub impulse_n_s: [f64; 3],
+    /// Impulse along the normal into the wall, N s.
+    pub normal_impulse_n_s: f64,
+    /// Sum of the magnitudes of the impulses across the normal, N s.
+    pub tangential_impulse_n_s: f64,
+    /// Work of the normal force while overlaps grow, J.
+    pub impact_j: f64,
+    /// Energy lost to friction, J.
+    pub friction_j: f64,
+    /// Energy lost to damping of the contacts, J.
+    pub damping_j: f64,
+    /// Normal force times sliding distance, N m.
+    pub sliding_load_n_m: f64,
+    /// Volume worn off, m3.
+    pub wear_volume_m3: f64,
+    /// Largest wear depth of a patch, m.
+    pub largest_wear_depth_m: f64,
+}
+
 /// Sleeping bodies.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

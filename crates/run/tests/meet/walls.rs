@@ -23,6 +23,7 @@ fn wall(shape: Shape, motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
         surface_velocity_m_s: belt_m_s,
         kind_of: vec![0, 2],
         kinds: kinds().to_vec(),
+        book: None,
     };
     Wall::new(Arc::new(model), Frame::default())
 }

@@ -192,6 +192,7 @@ fn walls() {
             pivot_m: [0.0; 3],
             motion: WallMotion::Fixed,
             surface_velocity_m_s: [0.0; 3],
+            loads: None,
         }
     );
     let belt = &walls["belt"];

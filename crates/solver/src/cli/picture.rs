@@ -10,6 +10,7 @@ use dem_io::units::{NUMBER, TIME, length_m, quantity};
 use dem_io::write_target::need_folder_of;
 use dem_io::{Diagnostic, Result};
 use dem_report::picture::{ColourBy, PictureKind, PictureOrder, Which, picture};
+use dem_report::wall_loads::{WallQuantity, wall_picture};
 use dem_terminal::colour::{Colour, on_standard_error};
 use dem_terminal::standard_output::write_standard_output;
 
@@ -46,6 +47,10 @@ pub(super) struct PictureArguments {
     /// dynamic_increase_factor or dynamic_utilisation; or body, speed, utilisation or stress
     #[arg(long, default_value = "fragment", value_name = "QUANTITY")]
     colour_by: String,
+    /// Instead of a frame the walls with loads, at the end of the run, in colours: wear_depth,
+    /// impact, friction or normal_impulse
+    #[arg(long, value_name = "QUANTITY", conflicts_with_all = ["frame", "time", "colour_by"])]
+    wall_loads: Option<String>,
 }
 
 pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
@@ -79,6 +84,9 @@ pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
     };
     let order = order(arguments)?;
     need_folder_of(target)?;
+    if let Some(by) = &arguments.wall_loads {
+        return write_wall_picture(arguments, wall_quantity(by)?, &order, kind);
+    }
     let drawn = picture(&arguments.folder, &order, kind)?;
     write_file(target, |out| out.write_all(&drawn.bytes))?;
     let warn = |text: &str| {
@@ -100,6 +108,35 @@ pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
         ));
     }
     write_standard_output(|out| writeln!(out, "{}", visible(&name)))
+}
+
+/// Writes the picture of the walls with loads.
+fn write_wall_picture(
+    arguments: &PictureArguments,
+    by: WallQuantity,
+    order: &PictureOrder,
+    kind: PictureKind,
+) -> Result<()> {
+    let target = &arguments.output;
+    let name = target.display().to_string();
+    if kind == PictureKind::Gif {
+        let problem = "the loads of walls are those at the end of the run";
+        return Err(Diagnostic::input(name, problem, "write a .png"));
+    }
+    let place = (order.target_m, order.zoom);
+    let png = wall_picture(&arguments.folder, by, order.from, place, order.size_px)?;
+    write_file(target, |out| out.write_all(&png))?;
+    write_standard_output(|out| writeln!(out, "{}", visible(&name)))
+}
+
+fn wall_quantity(text: &str) -> Result<WallQuantity> {
+    let found = WallQuantity::WORDS.iter().find(|(name, _)| *name == text);
+    found.map(|(_, by)| *by).ok_or_else(|| {
+        let names = WallQuantity::WORDS.map(|(name, _)| name);
+        let problem = format!("'{text}' is no quantity of walls");
+        let remedy = format!("write one of {}", names.join(", "));
+        Diagnostic::input("--wall-loads", problem, remedy)
+    })
 }
 
 fn order(arguments: &PictureArguments) -> Result<PictureOrder> {

@@ -13,7 +13,9 @@ use crate::stages::contacts::forces::contact_energy_j;
 use crate::stages::ledger::totals::synchronous_motions_of_free;
 use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::carrying::is_belt;
-use crate::stages::walls::{has_moved, moves, nearness, push_at_rest, touch_energy_j, will_move};
+use crate::stages::walls::{
+    has_moved, moves, nearness, push_at_rest, touch_energy_j, touch_point_m, will_move,
+};
 use crate::state::State;
 use crate::state::bridges::Bridges;
 use crate::state::clusters::fragments::mass_and_centre;
@@ -399,6 +401,7 @@ pub(crate) fn freeze_contacts(state: &mut State) {
                     touch: *touch,
                     push: push_at_rest(wall, contacts, p, touch),
                     at_s: state.time_s,
+                    foot_m: (wall.frame).to_wall(touch_point_m(p, touch).into()),
                     elastic_j: touch_energy_j(wall, contacts, p, touch),
                 });
             }
