@@ -110,6 +110,9 @@ pub struct Plan {
     pub warnings: Vec<String>,
     /// Why the result depends on the size of the spheres, a sentence each.
     pub coarse: Vec<String>,
+    /// For each wall whose way is known in advance, the largest distance between two places of one
+    /// point of its surface, m; by name.
+    pub strokes_m: BTreeMap<String, f64>,
     /// Forecast of the run, as far as possible.
     pub forecast: Forecast,
     /// Inputs of the plan, for the results.
@@ -177,6 +180,7 @@ pub fn plan(
     warnings.extend(doubts(scene, &state));
     warnings.extend(questions::doubts(scene, &state, &bodies));
     warnings.extend(without_contacts(scene, &state, &bodies));
+    warnings.extend(walls::crossings(&state.walls));
     notes.extend(questions::notes(scene, &state, &bodies, &unused_bonds));
     notes.extend(bounces::notes(scene, &state));
     state.ledger = opened(&state);
@@ -190,6 +194,7 @@ pub fn plan(
     let stages = planned_stages(&state, scene);
     leave_out(&stages, &mut state);
     Ok(Plan {
+        strokes_m: walls::strokes_m(&state.walls),
         state,
         bodies,
         groups,

@@ -335,6 +335,7 @@ fn without_effect(scene: &Scene, state: &State) -> Vec<String> {
                 angular_displacement_rad,
                 ..
             } => *angular_displacement_rad != [0.0; 3],
+            WallMotion::Gyration(_) => true,
             _ => false,
         };
         let is_measured = scene.measures.values().any(|measure| measure.of == *name);

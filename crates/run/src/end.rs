@@ -2,6 +2,8 @@
 
 pub(crate) mod summary_parts;
 
+use std::collections::BTreeMap;
+
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_results::folder::names;
@@ -16,7 +18,9 @@ use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
 use super::outputs::pictures::taken_until;
 use super::rigid_hits::RigidHits;
-use crate::end::summary_parts::{part_error_above, population_summary, sleep_summary};
+use crate::end::summary_parts::{
+    part_error_above, population_summary, sleep_summary, wall_summaries,
+};
 use crate::last_files::flows::body_flows;
 use crate::last_files::fragments::fragment_summary;
 use crate::machine::{machine, processor_time_s};
@@ -197,6 +201,10 @@ impl Run<'_> {
             population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
             taken_in: progress.monitors.taken.summary(state),
+            walls: match scene.test {
+                None => wall_summaries(state, &self.planned.strokes_m),
+                Some(_) => BTreeMap::new(),
+            },
             sleep: state.sleep.as_ref().map(sleep_summary),
             steps: state.steps,
             time_step_s: state.time_step_s,

@@ -27,7 +27,8 @@ use dem_io::units::{ANGLE, ANGULAR_VELOCITY, FREQUENCY, LENGTH, VELOCITY};
 use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox};
 
 table_schema! {
-    /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement or a servo.
+    /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement, a servo, an
+    /// orbit or a gyration.
     pub(super) static WALL = "[walls.NAME]";
 
     /// An infinite plane.
@@ -68,6 +69,10 @@ table_schema! {
     quantity("phase", &ANGLE).or(0.0);
     /// Servo control: the wall moves such that it exerts a given force.
     table("servo", &motion::SERVO);
+    /// Circular vibration, such as that of a screen.
+    table("orbit", &motion::ORBIT);
+    /// The axis of the wall goes round a cone, such as that of a cone crusher's mantle.
+    table("gyration", &motion::GYRATION);
     RAMP;
     TABLE;
 }

@@ -16,7 +16,8 @@ use super::equilibrium::EquilibriumSummary;
 use super::inputs::Inputs;
 use super::measured::Measured;
 use super::parts::{
-    AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary, TakenIn,
+    AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary,
+    TakenIn, WallSummary,
 };
 use super::sizes::{RESOLVED_DIAMETERS, SizeSummary, Sizes};
 use crate::json::from_json;
@@ -101,6 +102,9 @@ pub struct Summary {
     /// Energies that the particles of bodies with daughters took in, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub taken_in: BTreeMap<String, TakenIn>,
+    /// Walls that move, or whose surfaces do, by name; not those of a laboratory test.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub walls: BTreeMap<String, WallSummary>,
     /// Sleeping bodies, if any can sleep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep: Option<SleepSummary>,

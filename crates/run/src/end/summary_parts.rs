@@ -1,12 +1,15 @@
 //! Parts of the summary, from the state at the end of a run.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use dem_engine::stages::ledger::bookkeeping::over;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::sleep::Sleep;
-use dem_results::summary::{OutletSummary, PartError, PopulationSummary, SleepSummary};
+use dem_engine::state::walls::Wall;
+use dem_results::summary::{
+    OutletSummary, PartError, PopulationSummary, SleepSummary, WallSummary,
+};
 
 /// The largest energy error of bodies apart from all others, if it is more than this relative error
 /// of the whole.
@@ -79,6 +82,22 @@ fn single_spheres(state: &State, bodies: &[PlacedBody]) -> usize {
         .collect();
     let is_one = |body: &&PlacedBody| names.contains(&body.name[..]);
     bodies.iter().filter(is_one).count()
+}
+
+/// Walls that move, or whose surfaces do, by name, given the strokes of those that have one, m.
+pub(crate) fn wall_summaries(
+    state: &State,
+    strokes_m: &BTreeMap<String, f64>,
+) -> BTreeMap<String, WallSummary> {
+    let moving = state.walls.iter().filter(|wall| wall.does_work());
+    let summary = |wall: &Wall| WallSummary {
+        stroke_m: strokes_m.get(&wall.model.name).copied(),
+        work_j: wall.work_j,
+        mean_power_w: over(wall.work_j, state.time_s),
+    };
+    moving
+        .map(|wall| (wall.model.name.clone(), summary(wall)))
+        .collect()
 }
 
 /// Sleeping bodies at the end.

@@ -95,6 +95,7 @@ impl AtRest<'_> {
             flows: None,
             population: None,
             taken_in: BTreeMap::new(),
+            walls: BTreeMap::new(),
             sleep: None,
             steps: state.steps,
             time_step_s: state.time_step_s,

@@ -22,7 +22,11 @@ fn made(name: &str, options: &[&str]) -> (Bench, Vec<String>) {
     let said = String::from_utf8(output.stdout).unwrap();
     let wrong = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && wrong.is_empty(), "{wrong}");
-    let begin = format!("made {name}: scene.toml, shape.stl, body.vtp with ");
+    let body = match name {
+        "cone" => "mantle.stl, bowl.stl, ",
+        _ => "shape.stl, body.vtp with ",
+    };
+    let begin = format!("made {name}: scene.toml, {body}");
     assert!(said.starts_with(&begin), "{said}");
     assert!(bench.path(name).join("scene.schema.json").exists());
     let text = fs::read_to_string(bench.path(name).join("scene.toml")).unwrap();
@@ -115,6 +119,16 @@ fn mill_runs() {
 #[test]
 fn silo_runs() {
     is_made_and_runs_for("silo", "0.05 s", 20);
+}
+
+#[test]
+fn screen_runs() {
+    is_made_and_runs_for("screen", "0.2 s", 10);
+}
+
+#[test]
+fn cone_runs() {
+    is_made_and_runs_for("cone", "0.12 s", 1);
 }
 
 #[test]
@@ -263,6 +277,18 @@ fn wrong_answers_are_refused() {
         (
             &["silo", "--gap", "1 mm"],
             "--gap: 1 mm is not between 8 mm and 80 mm",
+        ),
+        (
+            &["cone", "--gap", "1 mm"],
+            "--gap: 1 mm is not between 6 mm and 18 mm",
+        ),
+        (
+            &["cone", "--shape", "cube.stl"],
+            "--shape: the scene 'cone' does not use it; remove it: it uses --size, --mass, --gap",
+        ),
+        (
+            &["screen", "--size", "10 mm", "--gap", "16 mm"],
+            "--gap: 16 mm is not between 3 mm and 15 mm",
         ),
         (
             &["chute", "--speed", "1e6 m/s"],

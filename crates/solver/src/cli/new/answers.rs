@@ -76,7 +76,11 @@ fn shape<R: BufRead, W: Write>(
         default: own.described(),
     };
     let read = |text: &str| read_shape(Path::new(text), template);
-    let original = match questions.answer(&asked, arguments.shape.as_deref(), read)? {
+    let answer = match template.is_ball() {
+        true => None,
+        false => questions.answer(&asked, arguments.shape.as_deref(), read)?,
+    };
+    let original = match answer {
         Some(surface) => surface,
         None => surface_of(stl(&own.facets()).as_bytes(), "the shape")?,
     };
