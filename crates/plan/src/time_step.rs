@@ -472,7 +472,15 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
             factor,
         } => factor.steepest_1_s() * speed(displacement_m, turn_rad),
         WallMotion::Orbit(orbit) => orbit.speed_m_s(),
-        WallMotion::Gyration(gyration) => speed(&[0.0; 3], &gyration.angular_velocity_rad_s(0.0)),
+        WallMotion::Gyration(gyration) => {
+            let spin = gyration.angular_velocity_rad_s(0.0);
+            // Particles may come later.
+            let corners = wall.model.shape.bounds().corners();
+            let reach_m = corners.map(|corner| Vector3::from(corner).norm());
+            let reach_m = reach_m.into_iter().fold(0.0, f64::max);
+            let finite_m = if reach_m.is_finite() { reach_m } else { 0.0 };
+            speed(&[0.0; 3], &spin).max(finite_m * Vector3::from(spin).norm())
+        }
         WallMotion::Servo {
             max_velocity_m_s: largest_velocity_m_s,
             ..

@@ -6,8 +6,9 @@ use dem_physics::geometry::{Bounds, Cylinder, Mesh, Shape};
 use nalgebra::Vector3;
 
 /// Pieces of an edge of a box.
-const PIECES: usize = 4;
-/// Points round a cylinder.
+const PIECES: usize = 8;
+/// Rings of points along a cylinder, less one, and points on each of them.
+const RINGS: usize = 16;
 const ROUND: usize = 16;
 /// Number of points on a mesh that is aimed at.
 const ON_MESH: usize = 1000;
@@ -42,8 +43,8 @@ fn points_of_pin(pin: &Cylinder) -> Vec<[f64; 3]> {
     let along = to - from;
     let across = along.cross(&Vector3::ith(along.iamin(), 1.0)).normalize();
     let other = along.normalize().cross(&across);
-    let rings = (0..=PIECES).flat_map(|ring| {
-        let centre = from + ring as f64 / PIECES as f64 * along;
+    let rings = (0..=RINGS).flat_map(|ring| {
+        let centre = from + ring as f64 / RINGS as f64 * along;
         (0..ROUND).map(move |k| {
             let (sine, cosine) = (TAU * k as f64 / ROUND as f64).sin_cos();
             centre + pin.radius_m() * (cosine * across + sine * other)

@@ -104,7 +104,7 @@ fn nothing_sleeps_on_a_plate_that_vibrates() {
     ] {
         let mut state = started(&on_a_plate(motion, sleep));
         let mut most = 0;
-        while state.time_s < 0.6 {
+        while state.time_s < 0.3 {
             dem_engine::step::step(&mut state);
             most = most.max(state.sleep.as_ref().unwrap().bodies);
         }

@@ -19,6 +19,11 @@ fn scene(run: &str, walls: &[&str]) -> String {
     HEAD.replace("TIME", run) + &walls.collect::<String>()
 }
 
+/// The same with contacts that allow for long steps.
+fn soft(text: String) -> String {
+    text.replace("young_modulus = 1e7", "young_modulus = 1")
+}
+
 const ORBIT: &str =
     "orbit = { axis = [0, 1, 0], towards = [1, 0, 0], radius = 0.01, frequency = 50 }";
 
@@ -33,8 +38,8 @@ fn rod(motion: &str) -> String {
 
 #[test]
 fn an_automatic_step_follows_the_period_and_a_longer_one_is_refused() {
-    let text =
-        |run: &str| scene(run, &[&deck(ORBIT)]).replace("young_modulus = 1e7", "young_modulus = 1");
+    let slow = ORBIT.replace("radius = 0.01", "radius = 1e-3");
+    let text = |run: &str| soft(scene(run, &[&deck(&slow)]));
     let plan = planned(&text("safety_factor = 0.5"));
     assert!(plan.step.step_s <= 1e-3 && plan.step.step_s > 0.99e-3);
     assert_eq!(
@@ -52,11 +57,11 @@ fn an_automatic_step_follows_the_period_and_a_longer_one_is_refused() {
 /// A mantle that turns faster than it gyrates needs steps for its turns.
 #[test]
 fn a_spin_needs_its_steps_too() {
-    let spin = "gyration = { axis = [0, 0, 1], towards = [1, 0, 0], angle = 0.01, frequency = 1, spin = \"600 rpm\" }";
-    let text = scene("time_step = 6e-3", &[&rod(spin)]);
+    let spin = "gyration = { axis = [0, 0, 1], towards = [1, 0, 0], angle = 0.01, frequency = 1, spin = \"3000 rpm\" }";
+    let text = soft(scene("time_step = 1.2e-3", &[&rod(spin)]));
     let refused = try_planned(&text).unwrap_err().to_string();
-    assert!(refused.contains("takes 100 ms for a period"), "{refused}");
-    planned(&scene("time_step = 5e-3", &[&rod(spin)]));
+    assert!(refused.contains("takes 20 ms for a period"), "{refused}");
+    planned(&soft(scene("time_step = 1e-3", &[&rod(spin)])));
 }
 
 #[test]
@@ -117,24 +122,24 @@ fn a_motion_through_another_wall_is_doubtful() {
         // They overlap at the start, as a jaw and the sides of its chamber do.
         (vec![deck(ORBIT), floor(0.01)], None),
         (vec![deck(ORBIT), side(1.012, "")], None),
-        (vec![deck(ORBIT), side(1.015, other)], Some("5 mm")),
+        (vec![deck(other), side(1.015, ORBIT)], Some("5 mm")),
         (vec![deck(ORBIT), side(1.015, ORBIT)], None),
         (vec![deck(ORBIT), side(1.015, &slower)], Some("5 mm")),
         (
             vec![
                 rod(swing),
                 side(0.05, "")
-                    .replace("0.02]", "-0.9]")
-                    .replace("0.04]", "-0.8]"),
+                    .replace("0.02]", "-1.1]")
+                    .replace("0.04]", "-0.9]"),
             ],
-            Some("39.6"),
+            Some("49.8"),
         ),
         (
             vec![
                 rod(swing),
                 side(0.1, "")
-                    .replace("0.02]", "-0.9]")
-                    .replace("0.04]", "-0.8]"),
+                    .replace("0.02]", "-1.1]")
+                    .replace("0.04]", "-0.9]"),
             ],
             None,
         ),
@@ -157,7 +162,7 @@ fn a_motion_through_another_wall_is_doubtful() {
 #[test]
 fn walls_keep_to_their_paths() {
     let lean = "pivot = [0, 0, 0.5]\nrotation = { axis = [0, 1, 0], angle = 0.2 }\ngyration = { axis = [0, 0, 1], towards = [1, 0, 0], angle = 0.1, frequency = 7 }";
-    let text = scene("time_step = 1e-4", &[&deck(ORBIT), &rod(lean)]);
+    let text = soft(scene("time_step = 1e-4", &[&deck(ORBIT), &rod(lean)]));
     let mut state = planned(&text).state;
     let start = state.walls[0].frame.position_m;
     assert!(

@@ -1,5 +1,6 @@
 //! What the options say, and a person at the terminal: shape, size, mass, and situation.
 
+use std::f64::consts::PI;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::Path;
 
@@ -40,7 +41,10 @@ pub(super) fn answers(arguments: &NewArguments) -> Result<Answers> {
     };
     let template = arguments.template;
     let (facets, surface) = shape(&mut questions, arguments)?;
-    let volume_m3 = surface.volume_m3();
+    let volume_m3 = match template.is_ball() {
+        true => PI / 6.0 * extent_m(&surface)[0].powi(3),
+        false => surface.volume_m3(),
+    };
     let usual_kg = template.density_kg_m3() * volume_m3;
     let asked = Question {
         option: "--mass",

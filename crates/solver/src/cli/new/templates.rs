@@ -296,6 +296,7 @@ impl Template {
                 let fall = (40.0 * size / GRAVITY_M_S2).sqrt();
                 vec![
                     ("gap", Value::length(situation_si)),
+                    ("mass", Value::new(body.mass_kg, "kg")),
                     ("fall", Value::new(fall, "s")),
                     ("fall_speed", Value::new(GRAVITY_M_S2 * fall, "m/s")),
                     ("turns", Value::new(11.0 / fall, "rad/s")),
@@ -367,15 +368,15 @@ fn screen_values(body: &Measured, opening_m: f64) -> Vec<(&'static str, Value)> 
     let [length, width] = deck
         .openings
         .map(|count| 1e-3 * f64::from(count) * (deck.opening + deck.bar));
-    let [sine, cosine] = [18_f64.to_radians().sin(), 18_f64.to_radians().cos()];
+    let (sine, cosine) = 14_f64.to_radians().sin_cos();
     let fine_kg = body.density_kg_m3 * PI / 6.0 * (0.4 * size).powi(3);
     vec![
         ("gap", Value::length(opening_m)),
         ("radius", Value::length(radius)),
-        // The deck throws at three times gravity.
+        // The acceleration of the deck is 2.2 times gravity.
         (
             "turns",
-            Value::new((3.0 * GRAVITY_M_S2 / radius).sqrt(), "rad/s"),
+            Value::new((2.2 * GRAVITY_M_S2 / radius).sqrt(), "rad/s"),
         ),
         ("width", Value::length(width)),
         ("reach", Value::length(0.5 * cosine * length)),
@@ -383,8 +384,8 @@ fn screen_values(body: &Measured, opening_m: f64) -> Vec<(&'static str, Value)> 
         ("fine_mass", Value::new(fine_kg, "kg")),
         ("fall", Value::new(fall, "s")),
         ("fall_speed", Value::new(GRAVITY_M_S2 * fall, "m/s")),
-        ("coarse_rate", Value::new(4.0 / fall, "/s")),
-        ("fine_rate", Value::new(24.0 / fall, "/s")),
+        ("coarse_rate", Value::new(6.0 / fall, "/s")),
+        ("fine_rate", Value::new(48.0 / fall, "/s")),
     ]
 }
 
