@@ -78,8 +78,9 @@ fn is_made_and_runs(name: &str, diameter: &str) {
     }
 }
 
-/// The same for rigid bodies, for this long, with the spheres that they have by default.
-fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) {
+/// The same for rigid bodies, for this long, with the spheres that they have by default. Returns the
+/// folder and the summary.
+fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) -> (Bench, Value) {
     let (bench, commands) = made(name, &[]);
     let checked = go(&bench, &commands[0], &[]);
     let has_warning = checked.lines().any(|line| line.starts_with("warning"));
@@ -89,6 +90,23 @@ fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) {
     let summary = summary(&bench, name);
     assert!(summary["population"]["fed"].as_u64().unwrap() >= bodies);
     assert!(summary["energy_error"].as_f64().unwrap() < 0.01);
+    (bench, summary)
+}
+
+/// The stroke and the mean power of the only wall that moves, in summary and page.
+fn assert_drives(name: &str, wall: &str, stroke_mm: f64, time: &str) {
+    let (bench, summary) = is_made_and_runs_for(name, time, 1);
+    let [stroke_m, work_j, power_w] =
+        ["stroke_m", "work_j", "mean_power_w"].map(|key| summary["walls"][wall][key].as_f64());
+    assert!(
+        (1e3 * stroke_m.unwrap() / stroke_mm - 1.0).abs() < 0.01,
+        "{stroke_m:?}"
+    );
+    let time_s = summary["simulated_s"].as_f64().unwrap();
+    assert!((power_w.unwrap() * time_s - work_j.unwrap()).abs() <= 1e-12 * work_j.unwrap().abs());
+    assert_eq!(summary["walls"].as_object().unwrap().len(), 1);
+    let page = fs::read_to_string(bench.path(name).join("results/report.html")).unwrap();
+    assert!(page.contains("moving wall"), "{name}");
 }
 
 #[test]
@@ -123,12 +141,19 @@ fn silo_runs() {
 
 #[test]
 fn screen_runs() {
-    is_made_and_runs_for("screen", "0.2 s", 10);
+    // Twice the radius of its circle, 0.15 times the size of the lumps.
+    assert_drives("screen", "deck", 6.0, "0.2 s");
 }
 
 #[test]
 fn cone_runs() {
-    is_made_and_runs_for("cone", "0.12 s", 1);
+    // Of the lower edge, 8 sizes below the pivot and 5 from the axis: twice the sine of the angle.
+    assert_drives(
+        "cone",
+        "mantle",
+        2.0 * 0.61_f64.to_radians().sin() * 30.0 * 8_f64.hypot(5.0),
+        "0.12 s",
+    );
 }
 
 #[test]
