@@ -78,6 +78,7 @@ use self::sieve_sizes::scale_to_sieves;
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
+pub use self::walls::stroke_m;
 use self::zones::place_zones;
 use dem_engine::state::bodies::PlacedBody;
 use dem_results::summary::Inputs;
@@ -110,9 +111,6 @@ pub struct Plan {
     pub warnings: Vec<String>,
     /// Why the result depends on the size of the spheres, a sentence each.
     pub coarse: Vec<String>,
-    /// For each wall whose way is known in advance, the largest distance between two places of one
-    /// point of its surface, m; by name.
-    pub strokes_m: BTreeMap<String, f64>,
     /// Forecast of the run, as far as possible.
     pub forecast: Forecast,
     /// Inputs of the plan, for the results.
@@ -180,7 +178,6 @@ pub fn plan(
     warnings.extend(doubts(scene, &state));
     warnings.extend(questions::doubts(scene, &state, &bodies));
     warnings.extend(without_contacts(scene, &state, &bodies));
-    warnings.extend(walls::crossings(&state.walls));
     notes.extend(questions::notes(scene, &state, &bodies, &unused_bonds));
     notes.extend(bounces::notes(scene, &state));
     state.ledger = opened(&state);
@@ -194,7 +191,6 @@ pub fn plan(
     let stages = planned_stages(&state, scene);
     leave_out(&stages, &mut state);
     Ok(Plan {
-        strokes_m: walls::strokes_m(&state.walls),
         state,
         bodies,
         groups,

@@ -22,7 +22,8 @@ use dem_physics::geometry::{Frame, Mesh, Shape, Touch};
 use dem_physics::rigid::turn;
 use dem_physics::rotation::{numbers, rotation};
 
-pub(super) use self::machine::{crossings, largest_step_s, refuse_long_step, strokes_m};
+pub use self::machine::stroke_m;
+pub(super) use self::machine::{crossings, largest_step_s, refuse_long_step};
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, question_size, surface_warnings};
 

@@ -64,8 +64,6 @@ pub(super) struct Planned {
     pub(super) warnings: Vec<String>,
     pub(super) coarse: Vec<String>,
     pub(super) inputs: Inputs,
-    /// Of walls whose way is known in advance, m; by name.
-    pub(super) strokes_m: BTreeMap<String, f64>,
     /// Change of the time step in a resumed run.
     pub(super) changed_step: Option<String>,
 }
@@ -139,7 +137,6 @@ impl<'a> Run<'a> {
                 coarse: plan.coarse,
                 warnings: plan.warnings,
                 inputs: plan.inputs,
-                strokes_m: plan.strokes_m,
                 changed_step: changed_step.map(|new| new.detail),
             },
             first_step: state.steps,

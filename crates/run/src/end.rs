@@ -2,8 +2,6 @@
 
 pub(crate) mod summary_parts;
 
-use std::collections::BTreeMap;
-
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_results::folder::names;
@@ -201,10 +199,7 @@ impl Run<'_> {
             population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
             taken_in: progress.monitors.taken.summary(state),
-            walls: match scene.test {
-                None => wall_summaries(state, &self.planned.strokes_m),
-                Some(_) => BTreeMap::new(),
-            },
+            walls: wall_summaries(scene, state),
             sleep: state.sleep.as_ref().map(sleep_summary),
             steps: state.steps,
             time_step_s: state.time_step_s,

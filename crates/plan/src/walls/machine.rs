@@ -1,6 +1,5 @@
 //! Walls that come back: how often, how far they go, and the walls in their way.
 
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use dem_io::units::{show_length, show_quantity, significant};
@@ -104,8 +103,8 @@ fn moments_s(motion: &WallMotion) -> Vec<f64> {
         .collect()
 }
 
-/// Where a wall is at this time, s. It has its frame of the start.
-fn frame_at(wall: &Wall, time_s: f64) -> Frame {
+/// Where a wall is at the second of these times, s, if it has its frame of the first.
+fn frame_at(wall: &Wall, [now_s, time_s]: [f64; 2]) -> Frame {
     let Frame { position_m, turned } = wall.frame;
     match &wall.model.motion {
         WallMotion::Displacement {
@@ -113,19 +112,19 @@ fn frame_at(wall: &Wall, time_s: f64) -> Frame {
             angular_displacement_rad,
             factor,
         } => {
-            let factor = factor_at(factor, time_s);
+            let gain = factor_at(factor, time_s) - factor_at(factor, now_s);
             Frame {
-                position_m: [0, 1, 2].map(|k| position_m[k] + factor * displacement_m[k]),
-                turned: turn(turned, angular_displacement_rad.map(|angle| factor * angle)),
+                position_m: [0, 1, 2].map(|k| position_m[k] + gain * displacement_m[k]),
+                turned: turn(turned, angular_displacement_rad.map(|angle| gain * angle)),
             }
         }
         WallMotion::Orbit(orbit) => {
-            let [from, to] = [0.0, time_s].map(|at_s| orbit.place_m(at_s));
+            let [from, to] = [now_s, time_s].map(|at_s| orbit.place_m(at_s));
             let position_m = [0, 1, 2].map(|k| position_m[k] + to[k] - from[k]);
             Frame { position_m, turned }
         }
         WallMotion::Gyration(gyration) => {
-            let [from, to] = [0.0, time_s].map(|at_s| rotation(gyration.turned(at_s)));
+            let [from, to] = [now_s, time_s].map(|at_s| rotation(gyration.turned(at_s)));
             let turned = numbers(&(to * from.inverse() * rotation(turned)));
             Frame { position_m, turned }
         }
@@ -133,27 +132,21 @@ fn frame_at(wall: &Wall, time_s: f64) -> Frame {
     }
 }
 
-/// For each wall whose way is known in advance, the largest distance between two places of one
-/// point of its surface, m; by name. The walls are where they start.
-pub(crate) fn strokes_m(walls: &[Wall]) -> BTreeMap<String, f64> {
-    let ways = walls.iter().filter_map(|wall| {
-        let moments = moments_s(&wall.model.motion).into_iter();
-        let frames: Vec<Frame> = moments.map(|time_s| frame_at(wall, time_s)).collect();
-        (!frames.is_empty()).then(|| (wall.model.name.clone(), stroke_m(wall, &frames)))
-    });
-    ways.collect()
-}
-
-fn stroke_m(wall: &Wall, frames: &[Frame]) -> f64 {
-    let mut stroke_m: f64 = 0.0;
+/// Largest distance between two places of one point of the surface of a wall, m, over its whole
+/// motion; of a plane, of its point. None: its way is not known in advance, or has no end. The wall
+/// is where it is at this time, s.
+pub fn stroke_m(wall: &Wall, now_s: f64) -> Option<f64> {
+    let moments = moments_s(&wall.model.motion).into_iter();
+    let frames: Vec<Frame> = moments.map(|at_s| frame_at(wall, [now_s, at_s])).collect();
+    let mut stroke_m = frames.first().map(|_| 0.0)?;
     for point in points_of(&wall.model.shape) {
         let places: Vec<[f64; 3]> = frames.iter().map(|f| f.to_space(point)).collect();
         for (k, place) in places.iter().enumerate() {
             let ways = places[..k].iter().map(|other| Bounds::of([*place, *other]));
-            stroke_m = ways.fold(stroke_m, |most, way| most.max(way.diagonal_m()));
+            stroke_m = ways.fold(stroke_m, |most: f64, way| most.max(way.diagonal_m()));
         }
     }
-    stroke_m
+    Some(stroke_m)
 }
 
 /// Pairs of walls that do not overlap at the start, but which their motion drives into each other,
@@ -224,13 +217,16 @@ fn crossing(one: &Seen<'_>, other: &Seen<'_>) -> Option<String> {
     let [own_hz, other_hz] = motions.map(frequency_hz);
     let mut deepest_m: f64 = 0.0;
     for time_s in moments_s(motions[0]) {
-        let frame = frame_at(wall, time_s);
+        let frame = frame_at(wall, [0.0, time_s]);
         // Walls of different frequencies meet in all positions.
         let times_s = match other_hz {
             Some(_) if own_hz != other_hz => moments_s(motions[1]),
             _ => vec![time_s],
         };
-        for frame_beside in times_s.into_iter().map(|at_s| frame_at(beside, at_s)) {
+        for frame_beside in times_s
+            .into_iter()
+            .map(|at_s| frame_at(beside, [0.0, at_s]))
+        {
             deepest_m = deepest_m.max(overlap_m(one, other, [&frame, &frame_beside]));
         }
     }

@@ -2,11 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use dem_scene::Scene;
+
 use dem_engine::stages::ledger::bookkeeping::over;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::sleep::Sleep;
 use dem_engine::state::walls::Wall;
+use dem_plan::stroke_m;
 use dem_results::summary::{
     OutletSummary, PartError, PopulationSummary, SleepSummary, WallSummary,
 };
@@ -84,17 +87,15 @@ fn single_spheres(state: &State, bodies: &[PlacedBody]) -> usize {
     bodies.iter().filter(is_one).count()
 }
 
-/// Walls that move, or whose surfaces do, by name, given the strokes of those that have one, m.
-pub(crate) fn wall_summaries(
-    state: &State,
-    strokes_m: &BTreeMap<String, f64>,
-) -> BTreeMap<String, WallSummary> {
-    let moving = state.walls.iter().filter(|wall| wall.does_work());
+/// Walls that move, or whose surfaces do, by name; none of a laboratory test.
+pub(crate) fn wall_summaries(scene: &Scene, state: &State) -> BTreeMap<String, WallSummary> {
+    let is_asked = |wall: &&Wall| scene.test.is_none() && wall.does_work();
     let summary = |wall: &Wall| WallSummary {
-        stroke_m: strokes_m.get(&wall.model.name).copied(),
+        stroke_m: stroke_m(wall, state.time_s),
         work_j: wall.work_j,
         mean_power_w: over(wall.work_j, state.time_s),
     };
+    let moving = state.walls.iter().filter(is_asked);
     moving
         .map(|wall| (wall.model.name.clone(), summary(wall)))
         .collect()

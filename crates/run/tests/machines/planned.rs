@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use dem_plan::stroke_m;
+
 use crate::helpers::{planned, try_planned};
 
 const HEAD: &str = "version = 1
@@ -82,28 +84,20 @@ fn strokes_are_those_of_the_farthest_point() {
         (deck(way), 0.01),
         (deck(pull), 4e-3),
     ] {
-        let strokes = planned(&scene("", &[&wall]).replace(", }", " }")).strokes_m;
-        let got_m = *strokes.values().next().unwrap();
+        let mut state = planned(&scene("", &[&wall]).replace(", }", " }")).state;
+        let got_m = stroke_m(&state.walls[0], 0.0).unwrap();
         assert!(
             (got_m - wanted_m).abs() < 1e-5,
             "{wall}: {got_m}, not {wanted_m}"
         );
+        // It is the same wherever the wall is.
+        super::go_until(&mut state, 0.0123);
+        let later_m = stroke_m(&state.walls[0], state.time_s).unwrap();
+        assert!((later_m - got_m).abs() < 1e-9, "{wall}: {later_m}, {got_m}");
     }
     let turns = deck("angular_velocity = [0, 1, 0]");
-    assert!(
-        planned(
-            &scene(
-                "",
-                &[
-                    &turns,
-                    "fixed]\nplane = { point = [0, 0, -9], normal = [0, 0, 1] }"
-                ]
-            )
-            .replace(", }", " }")
-        )
-        .strokes_m
-        .is_empty()
-    );
+    let state = planned(&scene("", &[&turns]).replace(", }", " }")).state;
+    assert_eq!(stroke_m(&state.walls[0], 0.0), None);
 }
 
 #[test]

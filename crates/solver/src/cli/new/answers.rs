@@ -13,7 +13,8 @@ use dem_plan::masses::{HEAVIEST_KG_M3, LIGHTEST_KG_M3};
 use super::arguments::NewArguments;
 use super::fill::Value;
 use super::questions::{Question, Questions};
-use super::shape::{Facet, stl};
+use super::shape::stl;
+use super::surfaces::Facet;
 use super::templates::{Measured, Template};
 
 /// The limits within which a body is likely what was meant, m.

@@ -2,10 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::surfaces::revolved;
-
-/// Three corners, anticlockwise from outside, mm.
-pub(super) type Facet = [[f64; 3]; 3];
+use super::surfaces::{Facet, revolved};
 
 /// Corners of the polygon that stands for a circle.
 const CORNERS: u32 = 32;

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::shape::Facet;
+/// Three corners, anticlockwise from outside, mm.
+pub(super) type Facet = [[f64; 3]; 3];
 
 /// Corners of the polygon that stands for the circles of a crusher.
 const CORNERS: u32 = 48;

@@ -8,8 +8,8 @@ use dem_io::units::{ANGULAR_VELOCITY, Dimension, LENGTH, VELOCITY};
 use dem_io::{Diagnostic, Result};
 
 use super::fill::Value;
-use super::shape::{Facet, Shape, drum};
-use super::surfaces::{Deck, revolved};
+use super::shape::{Shape, drum};
+use super::surfaces::{Deck, Facet, revolved};
 
 const GRAVITY_M_S2: f64 = 9.81;
 /// Of a hollow between the jaws of the crusher, which lean outwards by 10 degrees each: height over
