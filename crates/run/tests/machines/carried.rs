@@ -143,7 +143,7 @@ fn an_interruption_changes_nothing() {
             .restore(print, &mut again.state, &mut again.bodies)
             .unwrap();
         for state in [&mut state, &mut again.state] {
-            go_until(state, 0.2);
+            go_until(state, 0.1);
         }
         let of = |state: &dem_engine::state::State| {
             let wall = &state.walls[0];
