@@ -188,7 +188,7 @@ fn moves(scene: &Scene, part: &str, motion: &WallMotion) -> Result<Option<[Strin
             scene,
             part,
             "the exported regions move, but do not turn",
-            "leave angular_velocity and angular_displacement out, or run the scene with dem-run",
+            "leave angular_velocity, angular_displacement and gyration out, or run the scene with dem-run",
         ))
     };
     match motion {
@@ -230,6 +230,17 @@ fn moves(scene: &Scene, part: &str, motion: &WallMotion) -> Result<Option<[Strin
             let factor = formula(factor);
             Ok(Some(displacement_m.map(|d| format!("{d:e}*{factor}"))))
         }
+        WallMotion::Orbit(orbit) => {
+            let rate_rad_s = std::f64::consts::TAU * orbit.frequency_hz;
+            let [from, to] = [0.0, 0.25 / orbit.frequency_hz].map(|at_s| orbit.place_m(at_s));
+            Ok(Some([0, 1, 2].map(|k| {
+                format!(
+                    "({:e}*(cos({rate_rad_s:e}*time)-1)+({:e})*sin({rate_rad_s:e}*time))",
+                    from[k], to[k]
+                )
+            })))
+        }
+        WallMotion::Gyration(_) => turns(),
         WallMotion::Servo { .. } | WallMotion::Bar { .. } | WallMotion::Weight { .. } => {
             Err(refused(
                 scene,

@@ -8,6 +8,7 @@ pub mod contact;
 pub mod dual;
 pub mod geometry;
 pub mod lanes;
+pub mod machine;
 pub mod number;
 pub mod remembered;
 pub mod rigid;

@@ -10,4 +10,5 @@
 
 mod bond;
 mod contact;
+mod machine;
 mod shape;

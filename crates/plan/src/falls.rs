@@ -4,7 +4,7 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{BodyEntry, Fall, PlaneShape, Scene, StartAs, Wall, WallShape};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::walls::standing;
+use super::walls::{beginning, standing};
 use dem_physics::geometry::{Frame, Shape};
 
 /// Gap between a body that falls and its wall at the start, over the smallest radius of the body.
@@ -154,8 +154,9 @@ fn plane(wall: &Wall) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let WallShape::Plane(PlaneShape { point_m, normal }) = wall.shape else {
         return None;
     };
-    let turn = UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
+    let (begins_m, leans) = beginning(&wall.motion);
+    let turn = leans * UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
     let pivot = Vector3::from(wall.pivot_m);
-    let point = pivot + turn * (Vector3::from(point_m) - pivot);
+    let point = pivot + turn * (Vector3::from(point_m) - pivot) + begins_m;
     Some((point, turn * Vector3::from(normal)))
 }

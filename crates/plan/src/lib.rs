@@ -80,6 +80,7 @@ use self::size_correction::corrected;
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
+pub use self::walls::stroke_m;
 use self::zones::place_zones;
 use dem_engine::state::bodies::PlacedBody;
 use dem_results::summary::Inputs;

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use super::masses::sphere_density_kg_m3;
 use super::measure::measurement::Measurement;
 use super::unfinished::unfinished;
+use super::walls::crossings;
 use dem_engine::check::validity::LARGEST_OVERLAP;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
@@ -36,6 +37,7 @@ pub(super) fn doubts(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> Vec
     doubts.extend(sunk(state, bodies));
     doubts.extend(too_strong(scene));
     doubts.extend(few_rows(scene));
+    doubts.extend(crossings(&state.walls));
     doubts.extend(scene.measures.iter().filter_map(|(name, measure)| {
         let doubt = (Measurement::of(measure).doubt)(scene)?;
         Some(format!("measures.{name}: {doubt}"))
@@ -335,6 +337,7 @@ fn without_effect(scene: &Scene, state: &State) -> Vec<String> {
                 angular_displacement_rad,
                 ..
             } => *angular_displacement_rad != [0.0; 3],
+            WallMotion::Gyration(_) => true,
             _ => false,
         };
         let is_measured = scene.measures.values().any(|measure| measure.of == *name);

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::walls::{largest_step_s, refuse_long_step};
 use dem_engine::check::limit::{Limit, limit, safe_step};
 use dem_engine::check::linearised_contacts::impact::{at_impact, at_landing};
 use dem_engine::check::linearised_contacts::{
@@ -137,6 +138,7 @@ impl StepBasis {
             ),
             (run.end_time_s / 100.0, "the end time"),
             (across, "the way of a particle in a step"),
+            (largest_step_s(scene), "the period of a wall's motion"),
         ]
         .map(|(step_s, reason)| StepLimit { step_s, reason });
         limits.sort_by(|a, b| a.step_s.total_cmp(&b.step_s));
@@ -236,6 +238,9 @@ pub(crate) fn choose_step(
                     format!("{given:.4e} s is above the largest stable step of {foreseen_s:.4e} s"),
                     "write time_step = \"auto\", or --force-step to see what happens",
                 ));
+            }
+            if !allow_any_step {
+                refuse_long_step(scene, given)?;
             }
             given
         }
@@ -466,6 +471,16 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
             angular_displacement_rad: turn_rad,
             factor,
         } => factor.steepest_1_s() * speed(displacement_m, turn_rad),
+        WallMotion::Orbit(orbit) => orbit.speed_m_s(),
+        WallMotion::Gyration(gyration) => {
+            let spin = gyration.angular_velocity_rad_s(0.0);
+            // Particles may come later.
+            let corners = wall.model.shape.bounds().corners();
+            let reach_m = corners.map(|corner| Vector3::from(corner).norm());
+            let reach_m = reach_m.into_iter().fold(0.0, f64::max);
+            let finite_m = if reach_m.is_finite() { reach_m } else { 0.0 };
+            speed(&[0.0; 3], &spin).max(finite_m * Vector3::from(spin).norm())
+        }
         WallMotion::Servo {
             max_velocity_m_s: largest_velocity_m_s,
             ..

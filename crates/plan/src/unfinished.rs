@@ -40,7 +40,11 @@ pub(super) fn unfinished(scene: &Scene) -> Vec<String> {
             WallMotion::Displacement { factor, .. } => ("displacement", factor),
             WallMotion::Servo { factor, .. } => ("force", factor),
             WallMotion::Velocity { factor, .. } => ("velocity", factor),
-            WallMotion::Fixed | WallMotion::Bar { .. } | WallMotion::Weight { .. } => continue,
+            WallMotion::Fixed
+            | WallMotion::Orbit(_)
+            | WallMotion::Gyration(_)
+            | WallMotion::Bar { .. }
+            | WallMotion::Weight { .. } => continue,
         };
         // A table of a wall is often that of a machine, which goes on after the run.
         let is_servo = matches!(wall.motion, WallMotion::Servo { .. });

@@ -1,6 +1,8 @@
 //! Walls of a scene at their initial positions.
 
 mod books;
+mod machine;
+mod points;
 mod surface;
 
 use std::sync::Arc;
@@ -8,7 +10,7 @@ use std::sync::Arc;
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
 use dem_scene::{InitialOverlap, PlaneShape, Scene, Wall as SceneWall, WallMotion, WallShape};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::contacts::{Kinds, ROUNDING};
 use dem_engine::stages::walls::joints::drop_doubles;
@@ -19,8 +21,11 @@ use dem_engine::state::contacts::ContactHistory;
 use dem_engine::state::walls::{Wall, WallContact, WallModel};
 use dem_physics::geometry::{Frame, Mesh, Shape, Touch};
 use dem_physics::rigid::turn;
+use dem_physics::rotation::{numbers, rotation};
 
 use self::books::book_model;
+pub use self::machine::stroke_m;
+pub(super) use self::machine::{crossings, largest_step_s, refuse_long_step};
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, question_size, surface_warnings};
 
@@ -177,12 +182,24 @@ fn refuse_belt_off_plane(place: &str, entry: &SceneWall, frame: &Frame) -> Resul
     ))
 }
 
-/// Frame rotated about the pivot by `rotation`.
+/// Frame at the start: rotated about the pivot by `rotation`, and where its motion begins.
 fn frame(entry: &SceneWall) -> Frame {
     let upright = [0.0, 0.0, 0.0, 1.0];
+    let (begins_m, leans) = beginning(&entry.motion);
+    let drawn = rotation(turn(upright, entry.rotation_rad));
     Frame {
-        position_m: entry.pivot_m,
-        turned: turn(upright, entry.rotation_rad),
+        position_m: (Vector3::from(entry.pivot_m) + begins_m).into(),
+        turned: numbers(&(leans * drawn)),
+    }
+}
+
+/// Where a motion begins: the way of the pivot from where the wall is drawn, m, and the rotation
+/// about it.
+pub(super) fn beginning(motion: &WallMotion) -> (Vector3<f64>, UnitQuaternion<f64>) {
+    match motion {
+        WallMotion::Orbit(orbit) => (orbit.place_m(0.0).into(), UnitQuaternion::identity()),
+        WallMotion::Gyration(gyration) => (Vector3::zeros(), rotation(gyration.turned(0.0))),
+        _ => (Vector3::zeros(), UnitQuaternion::identity()),
     }
 }
 

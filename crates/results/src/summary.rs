@@ -19,6 +19,6 @@ pub use inputs::{InputBody, InputFile, Inputs};
 pub use measured::Measured;
 pub use parts::{
     AdaptiveSummary, BodyFlow, FragmentSummary, OutletSummary, PartError, PopulationSummary,
-    SleepSummary, TakenIn, WallLoadSummary,
+    SleepSummary, TakenIn, WallLoadSummary, WallSummary,
 };
 pub use sizes::{RESOLVED_DIAMETERS, SizeSummary, Sizes, Unresolved};

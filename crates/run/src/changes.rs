@@ -21,7 +21,10 @@ pub(super) fn last_change_s(state: &State) -> f64 {
             Factor::Table(points) if points.last().is_some_and(|[_, f]| *f == 0.0) => end(factor),
             _ => f64::INFINITY,
         },
-        WallMotion::Bar { .. } | WallMotion::Weight { .. } => f64::INFINITY,
+        WallMotion::Orbit(_)
+        | WallMotion::Gyration(_)
+        | WallMotion::Bar { .. }
+        | WallMotion::Weight { .. } => f64::INFINITY,
     });
     let let_go = state.supports.iter().map(|support| support.end_s);
     let let_go = let_go.chain(state.loads.iter().map(|load| load.end_s));

@@ -16,7 +16,9 @@ use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
 use super::outputs::pictures::taken_until;
 use super::rigid_hits::RigidHits;
-use crate::end::summary_parts::{part_error_above, population_summary, sleep_summary};
+use crate::end::summary_parts::{
+    part_error_above, population_summary, sleep_summary, wall_summaries,
+};
 use crate::last_files::flows::body_flows;
 use crate::last_files::fragments::fragment_summary;
 use crate::last_files::wall_loads::wall_load_summary;
@@ -199,6 +201,7 @@ impl Run<'_> {
             flows: body_flows(state, &self.planned.masses),
             taken_in: progress.monitors.taken.summary(state),
             wall_loads: wall_load_summary(state),
+            walls: wall_summaries(scene, state),
             sleep: state.sleep.as_ref().map(sleep_summary),
             steps: state.steps,
             time_step_s: state.time_step_s,

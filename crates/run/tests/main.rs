@@ -20,6 +20,7 @@ mod contact;
 mod failure;
 mod fragments;
 mod leave_out;
+mod machines;
 mod measures;
 mod meet;
 mod pictures;

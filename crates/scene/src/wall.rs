@@ -29,7 +29,8 @@ use dem_io::units::{ANGLE, ANGULAR_VELOCITY, FREQUENCY, LENGTH, VELOCITY};
 use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox};
 
 table_schema! {
-    /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement or a servo.
+    /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement, a servo, an
+    /// orbit or a gyration.
     pub(super) static WALL = "[walls.NAME]";
 
     /// An infinite plane.
@@ -72,6 +73,10 @@ table_schema! {
     table("servo", &motion::SERVO);
     /// Books what contacts do to each patch of the wall, where impacts hit it and where it wears.
     table("loads", &loads::LOADS).otherwise("not booked");
+    /// Circular vibration, such as that of a screen.
+    table("orbit", &motion::ORBIT);
+    /// The axis of the wall goes round a cone, such as that of a cone crusher's mantle.
+    table("gyration", &motion::GYRATION);
     RAMP;
     TABLE;
 }

@@ -101,7 +101,7 @@ pub struct WallScratch {
 
 impl Wall {
     /// Whether it moves, or its surface does.
-    pub(crate) fn does_work(&self) -> bool {
+    pub fn does_work(&self) -> bool {
         !matches!(self.model.motion, WallMotion::Fixed)
             || self.model.surface_velocity_m_s != [0.0; 3]
     }

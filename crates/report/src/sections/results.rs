@@ -4,7 +4,7 @@ use dem_io::units::{show_quantity, significant};
 use dem_laboratory::figure::{Figure, Source};
 use dem_plots::{Column, Page, Table};
 use dem_results::Summary;
-use dem_results::summary::{Measured, PopulationSummary, SizeSummary, Sizes};
+use dem_results::summary::{Measured, PopulationSummary, SizeSummary, Sizes, WallSummary};
 
 use super::outlets::add_outlets;
 use super::percent::percent;
@@ -87,6 +87,7 @@ pub(crate) fn add_results(page: &mut Page, summary: &Summary, folder: &Folder) {
             .map(|fact| fact.to_vec().into())
             .collect(),
     });
+    add_walls(page, summary);
     if let Some(sizes) = &summary.sizes {
         add_sizes(page, sizes);
     }
@@ -98,6 +99,30 @@ pub(crate) fn add_results(page: &mut Page, summary: &Summary, folder: &Folder) {
         page.paragraph("Mass that passes a sieve, inside and discharged (distribution.csv):");
         page.table(&table);
     }
+}
+
+/// Walls that move: stroke, work and mean power.
+fn add_walls(page: &mut Page, summary: &Summary) {
+    if summary.walls.is_empty() {
+        return;
+    }
+    let mut columns = vec![Column::text("moving wall")];
+    columns.extend(["stroke", "work", "mean power"].map(Column::number));
+    let row = |(name, wall): (&String, &WallSummary)| {
+        let stroke = wall
+            .stroke_m
+            .map_or(String::new(), |m| show_quantity(m, "m"));
+        let work = show_quantity(wall.work_j, "J");
+        vec![
+            name.clone(),
+            stroke,
+            work,
+            show_quantity(wall.mean_power_w, "W"),
+        ]
+        .into()
+    };
+    let rows = summary.walls.iter().map(row).collect();
+    page.table(&Table { columns, rows });
 }
 
 /// Sizes of the fragments: a row for each body and place.

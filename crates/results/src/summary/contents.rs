@@ -17,7 +17,7 @@ use super::inputs::Inputs;
 use super::measured::Measured;
 use super::parts::{
     AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary,
-    TakenIn, WallLoadSummary,
+    TakenIn, WallLoadSummary, WallSummary,
 };
 use super::sizes::{RESOLVED_DIAMETERS, SizeSummary, Sizes};
 use crate::json::from_json;
@@ -105,6 +105,9 @@ pub struct Summary {
     /// What contacts have done to each wall with `loads`, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub wall_loads: BTreeMap<String, WallLoadSummary>,
+    /// Walls that move, or whose surfaces do, by name; not those of a laboratory test.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub walls: BTreeMap<String, WallSummary>,
     /// Sleeping bodies, if any can sleep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep: Option<SleepSummary>,

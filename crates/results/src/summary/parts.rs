@@ -160,6 +160,19 @@ pub struct WallLoadSummary {
     pub largest_wear_depth_m: f64,
 }
 
+/// A wall that moves, or whose surface does.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct WallSummary {
+    /// Largest distance between two places of one point of its surface, m. None: its way is not
+    /// known in advance, or has no end.
+    pub stroke_m: Option<f64>,
+    /// Its work on the particles since the start, J.
+    pub work_j: f64,
+    /// The same over the time since then, W.
+    pub mean_power_w: f64,
+}
+
 /// Sleeping bodies.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

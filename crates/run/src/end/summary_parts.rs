@@ -1,12 +1,18 @@
 //! Parts of the summary, from the state at the end of a run.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+use dem_scene::Scene;
 
 use dem_engine::stages::ledger::bookkeeping::over;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::sleep::Sleep;
-use dem_results::summary::{OutletSummary, PartError, PopulationSummary, SleepSummary};
+use dem_engine::state::walls::Wall;
+use dem_plan::stroke_m;
+use dem_results::summary::{
+    OutletSummary, PartError, PopulationSummary, SleepSummary, WallSummary,
+};
 
 /// The largest energy error of bodies apart from all others, if it is more than this relative error
 /// of the whole.
@@ -79,6 +85,20 @@ fn single_spheres(state: &State, bodies: &[PlacedBody]) -> usize {
         .collect();
     let is_one = |body: &&PlacedBody| names.contains(&body.name[..]);
     bodies.iter().filter(is_one).count()
+}
+
+/// Walls that move, or whose surfaces do, by name; none of a laboratory test.
+pub(crate) fn wall_summaries(scene: &Scene, state: &State) -> BTreeMap<String, WallSummary> {
+    let is_asked = |wall: &&Wall| scene.test.is_none() && wall.does_work();
+    let summary = |wall: &Wall| WallSummary {
+        stroke_m: stroke_m(wall, state.time_s),
+        work_j: wall.work_j,
+        mean_power_w: over(wall.work_j, state.time_s),
+    };
+    let moving = state.walls.iter().filter(is_asked);
+    moving
+        .map(|wall| (wall.model.name.clone(), summary(wall)))
+        .collect()
 }
 
 /// Sleeping bodies at the end.

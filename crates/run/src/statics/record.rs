@@ -96,6 +96,7 @@ impl AtRest<'_> {
             population: None,
             taken_in: BTreeMap::new(),
             wall_loads: BTreeMap::new(),
+            walls: BTreeMap::new(),
             sleep: None,
             steps: state.steps,
             time_step_s: state.time_step_s,

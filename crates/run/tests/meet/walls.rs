@@ -11,6 +11,7 @@ use dem_engine::state::State;
 use dem_engine::state::walls::{Wall, WallModel};
 use dem_engine::step::{advance, interact};
 use dem_physics::geometry::{Frame, Plane, Shape, SolidBox};
+use dem_physics::machine::{Gyration, Orbit};
 use dem_scene::{Factor, WallMotion};
 
 use super::clouds::{cloud, kinds};
@@ -84,11 +85,35 @@ fn the_books_balance_whatever_the_walls_do() {
         angular_displacement_rad: [0.0; 3],
         factor: Factor::Ramp { until_s: 3e-3 },
     };
+    let orbit = WallMotion::Orbit(Orbit {
+        axis: [0.0, 1.0, 0.0],
+        towards: [-1.0, 0.0, 0.0],
+        radius_m: 0.5e-3,
+        frequency_hz: 200.0,
+    });
+    let gyration = WallMotion::Gyration(Gyration {
+        axis: [0.0, 0.0, 1.0],
+        towards: [0.0, 1.0, 0.0],
+        angle_rad: 0.1,
+        frequency_hz: 200.0,
+        spin_rad_s: 20.0,
+    });
+    let swing = WallMotion::Displacement {
+        displacement_m: [0.0; 3],
+        angular_displacement_rad: [0.1, 0.05, 0.0],
+        factor: Factor::Oscillation {
+            frequency_hz: 200.0,
+            phase_rad: -0.5,
+        },
+    };
     let block = SolidBox::new([-4e-3, -4e-3, -12e-3], [4e-3, 4e-3, -5e-3]).unwrap();
     for (name, walls) in [
         ("floor", vec![floor(WallMotion::Fixed, [0.0; 3])]),
         ("belt", vec![floor(WallMotion::Fixed, [0.5, 0.2, 0.0])]),
         ("turning", vec![floor(turning.clone(), [0.0; 3])]),
+        ("orbit", vec![floor(orbit, [0.0; 3])]),
+        ("gyration", vec![floor(gyration, [0.0; 3])]),
+        ("swing", vec![floor(swing, [0.0; 3])]),
         (
             "shaken block",
             vec![wall(Shape::Box(block), shaken, [0.0; 3])],

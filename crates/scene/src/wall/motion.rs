@@ -6,8 +6,11 @@ use crate::listing::Listing;
 use crate::schema::{Kind, table_schema};
 use crate::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::{FORCE, VELOCITY};
+use dem_io::units::{ANGLE, ANGULAR_VELOCITY, FORCE, FREQUENCY, LENGTH, VELOCITY};
+use dem_physics::machine::{Gyration, Orbit};
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Bound::Excluded;
 
 /// The motion of a wall.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -46,6 +49,12 @@ pub enum WallMotion {
         /// Factor on the force, over time.
         factor: Factor,
     },
+    /// `orbit = { axis, towards, radius, frequency }`: goes round a circle without turning. It is
+    /// drawn at the centre of the circle.
+    Orbit(Orbit),
+    /// `gyration = { axis, towards, angle, frequency, spin }`: its axis goes round a cone, with the
+    /// tip at the pivot. It is drawn upright.
+    Gyration(Gyration),
     /// The end of a long elastic bar, which a `[test]` makes of its walls: it pushes the body with
     /// Z (2 v_I - v) and moves at v, both along `direction`.
     Bar {
@@ -83,18 +92,60 @@ table_schema! {
     quantity("max_velocity", &VELOCITY).positive().required("\"10 mm/s\", its largest");
 }
 
+table_schema! {
+    /// Circular vibration: every point of the wall goes round a circle, and the wall does not turn.
+    /// The wall is drawn at the centre of the circle.
+    pub(crate) static ORBIT = "Orbit";
+
+    /// Axis of the circle, which the wall goes round right-handed; its length does not matter.
+    new("axis", Kind::Direction("an axis")).required("[0, 1, 0]");
+    /// From the centre of the circle to the wall at the start; its part normal to the axis counts.
+    new("towards", Kind::Direction("a direction")).required("[1, 0, 0]");
+    /// Radius of the circle: half the stroke.
+    quantity("radius", &LENGTH).positive().required("\"4 mm\"");
+    /// Frequency.
+    quantity("frequency", &FREQUENCY).positive().required("\"900 rpm\"");
+}
+
+table_schema! {
+    /// Gyration of a cone crusher's mantle: the axis of the wall goes round a cone, the tip of which
+    /// is the `pivot`. The wall is drawn upright, its axis along `axis`.
+    pub(crate) static GYRATION = "Gyration";
+
+    /// Axis of the cone, which the axis of the wall goes round right-handed; its length does not
+    /// matter.
+    new("axis", Kind::Direction("an axis")).required("[0, 0, 1]");
+    /// Direction in which the axis of the wall leans at the start, seen from the pivot along `axis`;
+    /// its part normal to the axis counts.
+    new("towards", Kind::Direction("a direction")).required("[1, 0, 0]");
+    /// Angle between the two axes.
+    quantity("angle", &ANGLE).within(Excluded(0.0), Excluded(FRAC_PI_2)).required("\"1 deg\"");
+    /// Frequency.
+    quantity("frequency", &FREQUENCY).positive().required("\"300 rpm\"");
+    /// Angular velocity of the wall about its own axis: at 0 it rocks without turning; at the
+    /// frequency of the gyration it turns as a whole about `axis`.
+    quantity("spin", &ANGULAR_VELOCITY).or(0.0);
+}
+
+/// Sine of the smallest angle between an axis and a direction away from it.
+const SMALLEST_SINE: f64 = 1e-6;
+
 /// The types of motion, each with its keys.
-const WAYS: [&[&str]; 3] = [
+const WAYS: [&[&str]; 5] = [
     &["velocity", "angular_velocity"],
     &["displacement", "angular_displacement"],
     &["servo"],
+    &["orbit"],
+    &["gyration"],
 ];
-const KEYS: [&str; 5] = [
+const KEYS: [&str; 7] = [
     "velocity",
     "angular_velocity",
     "displacement",
     "angular_displacement",
     "servo",
+    "orbit",
+    "gyration",
 ];
 
 pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
@@ -114,18 +165,29 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
     };
     let way = |key: &str| WAYS.iter().position(|keys| keys.contains(&key));
     if let Some((_, second)) = given.find(|(key, _)| way(key) != way(first)) {
-        let remedy = "a wall moves at a velocity, by a displacement or as a servo: remove one";
+        let remedy = "a wall moves at a velocity, by a displacement, as a servo, on an orbit or by a gyration: remove one";
         return Err(second.fault(format!("cannot be combined with {first}"), remedy));
     }
+    let is_machine = matches!(first, "orbit" | "gyration");
     if let (Some(field), true) = (wall.get("frequency"), way(first) != Some(1)) {
+        let problem = format!("cannot be combined with {first}");
+        let remedy = match is_machine {
+            true => format!("write it as {first}.frequency"),
+            false => "give the amplitude: displacement or angular_displacement".to_owned(),
+        };
+        return Err(field.fault(problem, remedy));
+    }
+    if let (Some(field), true) = (over_time(wall), is_machine) {
         let problem = format!("cannot be combined with {first}");
         return Err(field.fault(
             problem,
-            "give the amplitude: displacement or angular_displacement",
+            "remove it: the motion begins at its full frequency",
         ));
     }
     match first {
         "servo" => servo(&field, factor(wall)?),
+        "orbit" => orbit(&field).map(WallMotion::Orbit),
+        "gyration" => gyration(&field).map(WallMotion::Gyration),
         "displacement" | "angular_displacement" => Ok(WallMotion::Displacement {
             displacement_m: wall.read("displacement")?,
             angular_displacement_rad: wall.read("angular_displacement")?,
@@ -152,6 +214,43 @@ fn of_displacement(wall: &Table<'_>, moved: &Field<'_>) -> Result<Factor> {
         frequency_hz: wall.read("frequency")?,
         phase_rad: wall.read("phase")?,
     })
+}
+
+fn orbit(field: &Field<'_>) -> Result<Orbit> {
+    let table = Table::of(field, &ORBIT)?;
+    let axis = table.read("axis")?;
+    Ok(Orbit {
+        axis,
+        towards: normal_to(axis, &table)?,
+        radius_m: table.read("radius")?,
+        frequency_hz: table.read("frequency")?,
+    })
+}
+
+fn gyration(field: &Field<'_>) -> Result<Gyration> {
+    let table = Table::of(field, &GYRATION)?;
+    let axis = table.read("axis")?;
+    Ok(Gyration {
+        axis,
+        towards: normal_to(axis, &table)?,
+        angle_rad: table.read("angle")?,
+        frequency_hz: table.read("frequency")?,
+        spin_rad_s: table.read("spin")?,
+    })
+}
+
+/// The part of `towards` normal to the axis, of length 1.
+fn normal_to(axis: [f64; 3], table: &Table<'_>) -> Result<[f64; 3]> {
+    let towards: [f64; 3] = table.read("towards")?;
+    let along: f64 = (0..3).map(|k| axis[k] * towards[k]).sum();
+    let normal = [0, 1, 2].map(|k| towards[k] - along * axis[k]);
+    let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
+    if length < SMALLEST_SINE {
+        let problem = "is parallel to the axis";
+        let remedy = "give a direction away from the axis";
+        return Err(table.need("towards")?.fault(problem, remedy));
+    }
+    Ok(normal.map(|c| c / length))
 }
 
 fn servo(field: &Field<'_>, factor: Factor) -> Result<WallMotion> {
@@ -198,6 +297,8 @@ pub(super) fn list(motion: &WallMotion, listing: &mut Listing) {
             });
             factor
         }
+        WallMotion::Orbit(orbit) => return list_orbit(orbit, listing),
+        WallMotion::Gyration(gyration) => return list_gyration(gyration, listing),
         WallMotion::Bar { factor, .. } => {
             listing.text("motion", "end of a bar");
             factor
@@ -205,4 +306,23 @@ pub(super) fn list(motion: &WallMotion, listing: &mut Listing) {
         WallMotion::Weight { .. } => return listing.text("motion", "weight"),
     };
     factor::list(factor, listing);
+}
+
+fn list_orbit(orbit: &Orbit, listing: &mut Listing) {
+    listing.table("orbit", &ORBIT, |listing| {
+        listing.value("axis", &orbit.axis);
+        listing.value("towards", &orbit.towards);
+        listing.value("radius", &orbit.radius_m);
+        listing.value("frequency", &orbit.frequency_hz);
+    });
+}
+
+fn list_gyration(gyration: &Gyration, listing: &mut Listing) {
+    listing.table("gyration", &GYRATION, |listing| {
+        listing.value("axis", &gyration.axis);
+        listing.value("towards", &gyration.towards);
+        listing.value("angle", &gyration.angle_rad);
+        listing.value("frequency", &gyration.frequency_hz);
+        listing.value("spin", &gyration.spin_rad_s);
+    });
 }

@@ -258,6 +258,23 @@ fn motions_of_walls() {
             factor: Factor::Ramp { until_s: 0.001 },
         }
     );
+    // Only the part of a direction normal to the axis counts.
+    let WallMotion::Orbit(orbit) = walls["deck"].motion else {
+        panic!("no orbit");
+    };
+    assert_eq!(
+        (orbit.axis, orbit.towards),
+        ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
+    );
+    assert_eq!((orbit.radius_m, orbit.frequency_hz), (0.004, 15.0));
+    let WallMotion::Gyration(gyration) = walls["mantle"].motion else {
+        panic!("no gyration");
+    };
+    assert_eq!(gyration.axis, [0.0, 0.0, 1.0]);
+    assert_eq!(gyration.towards, [0.0, 1.0, 0.0]);
+    assert_near(gyration.angle_rad, 1_f64.to_radians());
+    assert_eq!(gyration.frequency_hz, 5.0);
+    assert_near(gyration.spin_rad_s, -std::f64::consts::PI / 3.0);
     // A single key of one type of motion leaves the others unset.
     let walls = good("touching.toml").walls;
     assert_eq!(

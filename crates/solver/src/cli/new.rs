@@ -6,6 +6,7 @@ mod fill;
 mod questions;
 mod shape;
 mod spheres;
+mod surfaces;
 mod templates;
 
 use std::fs;
@@ -24,7 +25,7 @@ use dem_terminal::standard_output::write_standard_output;
 use self::answers::{Answers, answers};
 pub(super) use self::arguments::NewArguments;
 use self::fill::filled;
-use self::shape::{drum, stl};
+use self::shape::stl;
 use super::new_folder::WholeFolder;
 
 /// Name of the file of keys for editors, as in the first line of each scene.
@@ -43,26 +44,22 @@ pub(super) fn new(arguments: &NewArguments) -> Result<()> {
         .transpose()
         .map_err(|error| error.within("--diameter"))?;
     let answers = answers(arguments)?;
-    let fineness = arguments.template.fineness();
-    let (mut body, remark) = spheres::packed(&answers.surface, fineness, diameter.as_ref())?;
-    let source = Path::new(".").join(folder).join("shape.stl");
-    body.about.source = Some(source.display().to_string());
-    if fineness.is_rigid {
-        // Neither bonds nor few spheres across matter to a clump.
-        body.bonds.clear();
-        body.bond_radii.clear();
-        body.bond_lengths.clear();
-        body.about.warnings.clear();
-    }
-    let drum_file = write_folder(arguments, &answers, &body)?;
+    let (body, remark) = match arguments.template.is_ball() {
+        true => (None, None),
+        false => {
+            let (body, remark) = packed(arguments, &answers, diameter.as_ref())?;
+            (Some(body), remark)
+        }
+    };
+    let surfaces = write_folder(arguments, &answers, body.as_ref())?;
+    let of_body = body.map_or(String::new(), |body| {
+        let (spheres, bonds) = (body.radii.len(), body.bonds.len());
+        format!("shape.stl, body.vtp with {spheres} particles and {bonds} bonds, ")
+    });
     write_standard_output(|out| {
         let shown = folder.display().to_string();
         let shown = visible(&shown);
-        let (spheres, bonds) = (body.radii.len(), body.bonds.len());
-        writeln!(
-            out,
-            "made {shown}: scene.toml, shape.stl, body.vtp with {spheres} particles and {bonds} bonds, {drum_file}{SCHEMA}"
-        )?;
+        writeln!(out, "made {shown}: scene.toml, {of_body}{surfaces}{SCHEMA}")?;
         if let Some(remark) = remark {
             writeln!(out, "note: {remark}")?;
         }
@@ -75,8 +72,32 @@ pub(super) fn new(arguments: &NewArguments) -> Result<()> {
     })
 }
 
-/// Writes the files. Returns what to say of the drum of a mill.
-fn write_folder(arguments: &NewArguments, answers: &Answers, body: &Body) -> Result<&'static str> {
+/// The shape packed with spheres, and a remark where it is coarser than it should be.
+fn packed(
+    arguments: &NewArguments,
+    answers: &Answers,
+    diameter: Option<&Sizes>,
+) -> Result<(Body, Option<String>)> {
+    let fineness = arguments.template.fineness();
+    let (mut body, remark) = spheres::packed(&answers.surface, fineness, diameter)?;
+    let source = Path::new(".").join(&arguments.folder).join("shape.stl");
+    body.about.source = Some(source.display().to_string());
+    if fineness.is_rigid {
+        // Neither bonds nor few spheres across matter to a clump.
+        body.bonds.clear();
+        body.bond_radii.clear();
+        body.bond_lengths.clear();
+        body.about.warnings.clear();
+    }
+    Ok((body, remark))
+}
+
+/// Writes the files. Returns the names of the surfaces of walls, each with a comma.
+fn write_folder(
+    arguments: &NewArguments,
+    answers: &Answers,
+    body: Option<&Body>,
+) -> Result<String> {
     let folder = &arguments.folder;
     let template = arguments.template;
     if let Some(parent) = folder.parent() {
@@ -88,11 +109,13 @@ fn write_folder(arguments: &NewArguments, answers: &Answers, body: &Body) -> Res
             out.write_all(text.as_bytes())
         })
     };
-    write("shape.stl", &stl(&answers.facets))?;
-    write_body(body, &made.path().join("body.vtp"))?;
-    let drum_m = template.drum_m(&answers.body);
-    if let Some([radius_m, length_m]) = drum_m {
-        write("drum.stl", &stl(&drum(1e3 * radius_m, 1e3 * length_m)))?;
+    if let Some(body) = body {
+        write("shape.stl", &stl(&answers.facets))?;
+        write_body(body, &made.path().join("body.vtp"))?;
+    }
+    let surfaces = template.surfaces(&answers.body, answers.situation_si);
+    for (name, facets) in &surfaces {
+        write(name, &stl(facets))?;
     }
     for (name, text) in reference::files() {
         if name == SCHEMA {
@@ -103,7 +126,8 @@ fn write_folder(arguments: &NewArguments, answers: &Answers, body: &Body) -> Res
     let scene = filled(template.text(), &answers.weight, &values);
     write("scene.toml", &scene)?;
     made.publish()?;
-    Ok(if drum_m.is_some() { "drum.stl, " } else { "" })
+    let names = surfaces.iter().map(|(name, _)| format!("{name}, "));
+    Ok(names.collect())
 }
 
 fn exists_already(folder: &Path) -> Diagnostic {

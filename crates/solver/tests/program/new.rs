@@ -22,7 +22,11 @@ fn made(name: &str, options: &[&str]) -> (Bench, Vec<String>) {
     let said = String::from_utf8(output.stdout).unwrap();
     let wrong = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && wrong.is_empty(), "{wrong}");
-    let begin = format!("made {name}: scene.toml, shape.stl, body.vtp with ");
+    let body = match name {
+        "cone" => "mantle.stl, bowl.stl, ",
+        _ => "shape.stl, body.vtp with ",
+    };
+    let begin = format!("made {name}: scene.toml, {body}");
     assert!(said.starts_with(&begin), "{said}");
     assert!(bench.path(name).join("scene.schema.json").exists());
     let text = fs::read_to_string(bench.path(name).join("scene.toml")).unwrap();
@@ -74,8 +78,9 @@ fn is_made_and_runs(name: &str, diameter: &str) {
     }
 }
 
-/// The same for rigid bodies, for this long, with the spheres that they have by default.
-fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) {
+/// The same for rigid bodies, for this long, with the spheres that they have by default. Returns the
+/// folder and the summary.
+fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) -> (Bench, Value) {
     let (bench, commands) = made(name, &[]);
     let checked = go(&bench, &commands[0], &[]);
     let has_warning = checked.lines().any(|line| line.starts_with("warning"));
@@ -85,6 +90,23 @@ fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) {
     let summary = summary(&bench, name);
     assert!(summary["population"]["fed"].as_u64().unwrap() >= bodies);
     assert!(summary["energy_error"].as_f64().unwrap() < 0.01);
+    (bench, summary)
+}
+
+/// The stroke and the mean power of the only wall that moves, in summary and page.
+fn assert_drives(name: &str, wall: &str, stroke_mm: f64, time: &str) {
+    let (bench, summary) = is_made_and_runs_for(name, time, 1);
+    let [stroke_m, work_j, power_w] =
+        ["stroke_m", "work_j", "mean_power_w"].map(|key| summary["walls"][wall][key].as_f64());
+    assert!(
+        (1e3 * stroke_m.unwrap() / stroke_mm - 1.0).abs() < 0.01,
+        "{stroke_m:?}"
+    );
+    let time_s = summary["simulated_s"].as_f64().unwrap();
+    assert!((power_w.unwrap() * time_s - work_j.unwrap()).abs() <= 1e-12 * work_j.unwrap().abs());
+    assert_eq!(summary["walls"].as_object().unwrap().len(), 1);
+    let page = fs::read_to_string(bench.path(name).join("results/report.html")).unwrap();
+    assert!(page.contains("moving wall"), "{name}");
 }
 
 #[test]
@@ -115,6 +137,23 @@ fn mill_runs() {
 #[test]
 fn silo_runs() {
     is_made_and_runs_for("silo", "0.05 s", 20);
+}
+
+#[test]
+fn screen_runs() {
+    // Twice the radius of its circle, 0.15 times the size of the lumps.
+    assert_drives("screen", "deck", 6.0, "0.2 s");
+}
+
+#[test]
+fn cone_runs() {
+    // Of the lower edge, 8 sizes below the pivot and 5 from the axis: twice the sine of the angle.
+    assert_drives(
+        "cone",
+        "mantle",
+        2.0 * 0.61_f64.to_radians().sin() * 30.0 * 8_f64.hypot(5.0),
+        "0.12 s",
+    );
 }
 
 #[test]
@@ -263,6 +302,18 @@ fn wrong_answers_are_refused() {
         (
             &["silo", "--gap", "1 mm"],
             "--gap: 1 mm is not between 8 mm and 80 mm",
+        ),
+        (
+            &["cone", "--gap", "1 mm"],
+            "--gap: 1 mm is not between 6 mm and 18 mm",
+        ),
+        (
+            &["cone", "--shape", "cube.stl"],
+            "--shape: the scene 'cone' does not use it; remove it: it uses --size, --mass, --gap",
+        ),
+        (
+            &["screen", "--size", "10 mm", "--gap", "16 mm"],
+            "--gap: 16 mm is not between 3 mm and 15 mm",
         ),
         (
             &["chute", "--speed", "1e6 m/s"],

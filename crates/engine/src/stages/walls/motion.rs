@@ -70,6 +70,14 @@ pub(crate) fn planned(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> [[f64; 3];
                 turn_rad.map(|t| gain * t / dt),
             ]
         }
+        WallMotion::Orbit(orbit) => {
+            let [from, to] = [time_s, time_s + dt].map(|at_s| orbit.place_m(at_s));
+            [[0, 1, 2].map(|k| (to[k] - from[k]) / dt), [0.0; 3]]
+        }
+        WallMotion::Gyration(gyration) => {
+            let turn_rad = gyration.turn_between_rad([time_s, time_s + dt]);
+            [[0.0; 3], turn_rad.map(|t| t / dt)]
+        }
         WallMotion::Servo {
             force_n,
             direction,

@@ -1,5 +1,6 @@
 //! What the options say, and a person at the terminal: shape, size, mass, and situation.
 
+use std::f64::consts::PI;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::Path;
 
@@ -12,7 +13,8 @@ use dem_plan::masses::{HEAVIEST_KG_M3, LIGHTEST_KG_M3};
 use super::arguments::NewArguments;
 use super::fill::Value;
 use super::questions::{Question, Questions};
-use super::shape::{Facet, stl};
+use super::shape::stl;
+use super::surfaces::Facet;
 use super::templates::{Measured, Template};
 
 /// The limits within which a body is likely what was meant, m.
@@ -40,7 +42,10 @@ pub(super) fn answers(arguments: &NewArguments) -> Result<Answers> {
     };
     let template = arguments.template;
     let (facets, surface) = shape(&mut questions, arguments)?;
-    let volume_m3 = surface.volume_m3();
+    let volume_m3 = match template.is_ball() {
+        true => PI / 6.0 * extent_m(&surface)[0].powi(3),
+        false => surface.volume_m3(),
+    };
     let usual_kg = template.density_kg_m3() * volume_m3;
     let asked = Question {
         option: "--mass",
@@ -76,7 +81,11 @@ fn shape<R: BufRead, W: Write>(
         default: own.described(),
     };
     let read = |text: &str| read_shape(Path::new(text), template);
-    let original = match questions.answer(&asked, arguments.shape.as_deref(), read)? {
+    let answer = match template.is_ball() {
+        true => None,
+        false => questions.answer(&asked, arguments.shape.as_deref(), read)?,
+    };
+    let original = match answer {
         Some(surface) => surface,
         None => surface_of(stl(&own.facets()).as_bytes(), "the shape")?,
     };

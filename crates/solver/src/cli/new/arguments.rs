@@ -30,7 +30,8 @@ pub(crate) struct NewArguments {
     /// Speed of the belt, such as "3 m/s" (chute), or of the drum, such as "60 rpm" (mill)
     #[arg(long, allow_hyphen_values = true)]
     speed: Option<String>,
-    /// Gap between the jaws (crusher), or width of the slot (silo), such as "20 mm"
+    /// Gap between the jaws (crusher) or at the closed side (cone), width of the slot (silo) or of
+    /// the openings (screen), such as "20 mm"
     #[arg(long, allow_hyphen_values = true)]
     gap: Option<String>,
     /// Diameters of the spheres, as for dem-pack; if not given, ten across the thinnest part, or as
@@ -61,15 +62,26 @@ impl NewArguments {
     /// Refuses an option that the template does not use.
     pub(super) fn refuse_unused(&self) -> Result<()> {
         let used = self.template.option();
-        let mut given = (self.situations().into_iter()).filter(|(_, value)| value.is_some());
-        let Some((option, _)) = given.find(|(option, _)| Some(*option) != used) else {
+        let is_ball = self.template.is_ball();
+        let of_shape = [("--shape", &self.shape), ("--diameter", &self.diameter)];
+        let of_shape = of_shape.map(|(option, value)| (option, value.as_deref()));
+        let others = of_shape.into_iter().filter(|_| is_ball);
+        let mut given = (self.situations().into_iter())
+            .filter(|(option, _)| Some(*option) != used)
+            .chain(others)
+            .filter(|(_, value)| value.is_some());
+        let Some((option, _)) = given.next() else {
             return Ok(());
         };
         let used = used.map_or(String::new(), |used| format!(", {used}"));
+        let all = match is_ball {
+            true => format!("--size, --mass{used}"),
+            false => format!("--shape, --size, --mass{used} and --diameter"),
+        };
         Err(Diagnostic::input(
             option,
             format!("the scene '{}' does not use it", self.template.name()),
-            format!("remove it: it uses --shape, --size, --mass{used} and --diameter"),
+            format!("remove it: it uses {all}"),
         ))
     }
 }

@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// Three corners, anticlockwise from outside, mm.
-pub(super) type Facet = [[f64; 3]; 3];
+use super::surfaces::{Facet, revolved};
 
 /// Corners of the polygon that stands for a circle.
 const CORNERS: u32 = 32;
@@ -17,6 +16,8 @@ pub(super) enum Shape {
     Cylinder(f64, f64),
     /// Diameter and thickness along y, mm.
     Disc(f64, f64),
+    /// Diameter, mm.
+    Ball(f64),
 }
 
 impl Shape {
@@ -31,6 +32,18 @@ impl Shape {
                 let facets = prism(&circle(0.5 * diameter), thickness);
                 facets.iter().map(|facet| facet.map(z_to_y)).collect()
             }
+            Self::Ball(diameter) => {
+                let parts = f64::from(CORNERS / 2);
+                let arc: Vec<[f64; 2]> = (0..=CORNERS / 2)
+                    .map(|k| {
+                        let (sin, cos) = (0.5 * TAU * f64::from(k) / parts).sin_cos();
+                        let is_end = k == 0 || k == CORNERS / 2;
+                        let radius = if is_end { 0.0 } else { 0.5 * diameter * sin };
+                        [radius, -0.5 * diameter * cos]
+                    })
+                    .collect();
+                revolved(&arc)
+            }
         }
     }
 
@@ -41,6 +54,7 @@ impl Shape {
             Self::Cylinder(diameter, height) => {
                 format!("a cylinder of {diameter} mm by {height} mm")
             }
+            Self::Ball(diameter) => format!("a ball of {diameter} mm"),
             Self::Disc(diameter, thickness) => format!("a disc of {diameter} mm by {thickness} mm"),
         }
     }

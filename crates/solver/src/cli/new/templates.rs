@@ -8,7 +8,8 @@ use dem_io::units::{ANGULAR_VELOCITY, Dimension, LENGTH, VELOCITY};
 use dem_io::{Diagnostic, Result};
 
 use super::fill::Value;
-use super::shape::Shape;
+use super::shape::{Shape, drum};
+use super::surfaces::{Deck, Facet, revolved};
 
 const GRAVITY_M_S2: f64 = 9.81;
 /// Of a hollow between the jaws of the crusher, which lean outwards by 10 degrees each: height over
@@ -30,6 +31,10 @@ pub(super) enum Template {
     Mill,
     /// Pellets run out of a silo through a slot
     Silo,
+    /// Ore between a mantle that gyrates and its bowl: product and power
+    Cone,
+    /// A deck with openings that vibrates: what passes, and what goes over it
+    Screen,
     /// Four-point bending of a bar
     Bending,
     /// A disc is pressed across its diameter until it splits
@@ -97,6 +102,8 @@ impl Template {
             Self::Crusher => include_str!("templates/crusher.toml"),
             Self::Mill => include_str!("templates/mill.toml"),
             Self::Silo => include_str!("templates/silo.toml"),
+            Self::Cone => include_str!("templates/cone.toml"),
+            Self::Screen => include_str!("templates/screen.toml"),
             Self::Bending => include_str!("templates/bending.toml"),
             Self::Brazilian => include_str!("templates/brazilian.toml"),
             Self::Compression => include_str!("templates/compression.toml"),
@@ -114,7 +121,7 @@ impl Template {
         match self {
             Self::Drop | Self::DropWeight => Some("--height"),
             Self::Chute | Self::Mill => Some("--speed"),
-            Self::Crusher | Self::Silo => Some("--gap"),
+            Self::Crusher | Self::Silo | Self::Cone | Self::Screen => Some("--gap"),
             Self::Bending | Self::Brazilian | Self::Compression => None,
         }
     }
@@ -126,6 +133,8 @@ impl Template {
             Self::Crusher => Shape::Cylinder(60.0, 60.0),
             Self::Mill => Shape::Block([30.0, 25.0, 20.0]),
             Self::Silo => Shape::Cylinder(8.0, 8.0),
+            Self::Cone => Shape::Ball(30.0),
+            Self::Screen => Shape::Block([20.0, 18.0, 16.0]),
             Self::Bending => Shape::Block([105.0, 30.0, 30.0]),
             Self::DropWeight | Self::Brazilian => Shape::Disc(40.0, 30.0),
             Self::Compression => Shape::Cylinder(30.0, 60.0),
@@ -136,7 +145,9 @@ impl Template {
         match self {
             Self::Drop => 1500.0,
             Self::Chute | Self::Crusher | Self::Bending => 2050.0,
-            Self::DropWeight | Self::Brazilian | Self::Compression => 2650.0,
+            Self::DropWeight | Self::Brazilian | Self::Compression | Self::Cone | Self::Screen => {
+                2650.0
+            }
             Self::Mill => 2700.0,
             Self::Silo => 1200.0,
         }
@@ -145,15 +156,20 @@ impl Template {
     pub(super) fn fineness(self) -> Fineness {
         let (across, most_spheres) = match self {
             Self::Mill => (3.4, 300),
-            Self::Silo => (3.2, 100),
+            Self::Silo | Self::Screen => (3.2, 100),
             Self::Bending => (9.8, 6000),
             _ => (9.8, 3000),
         };
         Fineness {
             across,
             most_spheres,
-            is_rigid: matches!(self, Self::Mill | Self::Silo),
+            is_rigid: matches!(self, Self::Mill | Self::Silo | Self::Screen),
         }
+    }
+
+    /// Whether its bodies are single spheres, which have neither shape nor packing.
+    pub(super) fn is_ball(self) -> bool {
+        self == Self::Cone
     }
 
     /// None for tests of the laboratory whose walls press until the body breaks.
@@ -181,6 +197,14 @@ impl Template {
             Self::Silo => {
                 let range = [1.0, 10.0].map(|factor| factor * size_m);
                 ("width of the slot", &LENGTH, 5.0 * size_m, range)
+            }
+            Self::Cone => {
+                let range = [0.2, 0.6].map(|factor| factor * size_m);
+                ("at the closed side", &LENGTH, 0.25 * size_m, range)
+            }
+            Self::Screen => {
+                let range = [0.3, 1.5].map(|factor| factor * size_m);
+                ("width of the openings", &LENGTH, 0.6 * size_m, range)
             }
             Self::Bending | Self::Brazilian | Self::Compression => return None,
         };
@@ -268,15 +292,101 @@ impl Template {
                     ("rate", Value::new(160.0 / fall, "/s")),
                 ]
             }
+            Self::Cone => {
+                let fall = (40.0 * size / GRAVITY_M_S2).sqrt();
+                vec![
+                    ("gap", Value::length(situation_si)),
+                    ("mass", Value::new(body.mass_kg, "kg")),
+                    ("fall", Value::new(fall, "s")),
+                    ("fall_speed", Value::new(GRAVITY_M_S2 * fall, "m/s")),
+                    ("turns", Value::new(11.0 / fall, "rad/s")),
+                    ("rate", Value::new(4.0 / fall, "/s")),
+                ]
+            }
+            Self::Screen => screen_values(body, situation_si),
             Self::Bending | Self::Brazilian | Self::Compression => vec![],
         });
         values
     }
 
-    /// Radius and length of the drum of a mill, m.
-    pub(super) fn drum_m(self, body: &Measured) -> Option<[f64; 2]> {
-        (self == Self::Mill).then(|| [drum_radius_m(body), 3.2 * body.size_m()])
+    /// Names and facets of the surfaces of walls, mm.
+    pub(super) fn surfaces(
+        self,
+        body: &Measured,
+        situation_si: f64,
+    ) -> Vec<(&'static str, Vec<Facet>)> {
+        let size = 1e3 * body.size_m();
+        match self {
+            Self::Mill => vec![("drum.stl", drum(1e3 * drum_radius_m(body), 3.2 * size))],
+            Self::Cone => {
+                let line = |points: &[[f64; 2]]| {
+                    let points = points.iter().map(|point| point.map(|x| x * size));
+                    revolved(&points.collect::<Vec<_>>())
+                };
+                // Along the normal of the mantle, from its middle position.
+                let lowest = 1e3 * situation_si / size + CONE_THROW;
+                let [low, high] = [(MANTLE[1], lowest), (MANTLE[2], CONE_MOUTH)]
+                    .map(|([r, z], gap)| [r + 0.857 * gap, z + 0.515 * gap]);
+                let rim = [4.5, 8.0];
+                vec![
+                    ("mantle.stl", line(&MANTLE)),
+                    ("bowl.stl", line(&[rim, high, low])),
+                ]
+            }
+            Self::Screen => vec![("deck.stl", deck(body, situation_si).facets())],
+            _ => vec![],
+        }
     }
+}
+
+/// The outline of the mantle of the cone, radius and height in sizes of the body. Its side leans
+/// outwards by 31 degrees.
+const MANTLE: [[f64; 2]; 4] = [[0.0, 0.0], [5.0, 0.0], [2.0, 5.0], [0.0, 6.0]];
+/// Half the difference between the gaps at the open and at the closed side, in the same.
+const CONE_THROW: f64 = 0.1;
+/// Gap at the upper end of the side, in the same.
+const CONE_MOUTH: f64 = 1.4;
+
+/// The deck of the screen: about 16 sizes long and 5 wide.
+fn deck(body: &Measured, opening_m: f64) -> Deck {
+    let size = 1e3 * body.size_m();
+    let (opening, bar) = (1e3 * opening_m, 0.3 * size);
+    let count = |length: f64| (length * size / (opening + bar)).round().max(1.0) as u32;
+    Deck {
+        openings: [count(16.0), count(5.0)],
+        opening,
+        bar,
+        thickness: 0.25 * size,
+    }
+}
+
+fn screen_values(body: &Measured, opening_m: f64) -> Vec<(&'static str, Value)> {
+    let size = body.size_m();
+    let fall = (40.0 * size / GRAVITY_M_S2).sqrt();
+    let radius = 0.15 * size;
+    let deck = deck(body, opening_m);
+    let [length, width] = deck
+        .openings
+        .map(|count| 1e-3 * f64::from(count) * (deck.opening + deck.bar));
+    let (sine, cosine) = 14_f64.to_radians().sin_cos();
+    let fine_kg = body.density_kg_m3 * PI / 6.0 * (0.4 * size).powi(3);
+    vec![
+        ("gap", Value::length(opening_m)),
+        ("radius", Value::length(radius)),
+        // The acceleration of the deck is 2.2 times gravity.
+        (
+            "turns",
+            Value::new((2.2 * GRAVITY_M_S2 / radius).sqrt(), "rad/s"),
+        ),
+        ("width", Value::length(width)),
+        ("reach", Value::length(0.5 * cosine * length)),
+        ("drop", Value::length(0.5 * sine * length)),
+        ("fine_mass", Value::new(fine_kg, "kg")),
+        ("fall", Value::new(fall, "s")),
+        ("fall_speed", Value::new(GRAVITY_M_S2 * fall, "m/s")),
+        ("coarse_rate", Value::new(6.0 / fall, "/s")),
+        ("fine_rate", Value::new(48.0 / fall, "/s")),
+    ]
 }
 
 fn drum_radius_m(body: &Measured) -> f64 {
