@@ -7,6 +7,7 @@ mod design;
 mod find;
 pub(super) mod keys;
 mod measures;
+mod probability;
 mod read;
 mod rewrite;
 mod values;
@@ -14,7 +15,7 @@ mod values;
 pub use check::{override_text, reference_values, scene_with, settle_references, value_to_find};
 pub use contents::{
     Average, Axis, AxisValue, BODY, Combine, Design, DesignKind, DesignRange, Find, Keep,
-    MeasureOf, Pieces, RUN_RESULTS, Reference, RunTime, STUDY_VERSION, Setting, Study,
+    MeasureOf, Pieces, Probability, RUN_RESULTS, Reference, RunTime, STUDY_VERSION, Setting, Study,
     StudyMeasure,
 };
 pub(crate) use keys::STUDY;

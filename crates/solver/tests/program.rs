@@ -46,6 +46,7 @@ mod sweep;
 mod threads;
 mod unstable;
 mod verdict;
+mod wall_files;
 mod wall_frames;
 mod zones;
 

@@ -5,6 +5,7 @@ mod designs;
 mod failed;
 mod lists;
 mod pieces;
+mod probability;
 mod responses;
 mod safety;
 
