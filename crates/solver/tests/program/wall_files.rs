@@ -23,7 +23,7 @@ FILE
 material = "ball"
 [measures.push]
 of = "box"
-quantity = "force_z"
+quantity = "force"
 statistic = "largest"
 "#;
 

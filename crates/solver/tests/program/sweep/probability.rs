@@ -7,16 +7,16 @@ const STUDY: &str = r#"version = 1
 scene = "spring.toml"
 [vary]
 "run.seed" = [1, 2, 3]
-"materials.steel.density" = ["7000 kg/m3", "8000 kg/m3", "9000 kg/m3", "10000 kg/m3"]
+"loads.tip.force" = [["1 kN", 0, 0], ["2 kN", 0, 0], ["3 kN", 0, 0], ["4 kN", 0, 0]]
 [probability]
 of = "tip"
-above = "1 m"
-over = "materials.steel.density"
+below = "-1 m"
+over = "loads.tip.force"
 [measures.tip]
 reference = "none"
 "#;
 
-/// The displacements of the first seed, by density, m: falling.
+/// The displacements of the first seed, by force, m: rising.
 fn displacements(csv: &str) -> Vec<f64> {
     let rows = csv.lines().skip(1).take(4);
     let cell = |row: &str| row.split(',').nth(8).unwrap().parse().unwrap();
@@ -36,25 +36,25 @@ fn a_limit_is_chosen_after_the_runs() {
         "{heading}"
     );
     let tip = displacements(&csv);
-    assert!(tip.windows(2).all(|two| two[0] != two[1]), "{tip:?}");
+    assert!(tip.windows(2).all(|two| two[0] < two[1]), "{tip:?}");
     let said = good(&bench, &["--collect"]);
-    let none = "probability  tip above 1 m in none of 12 runs: its mean probability in them is below 22.1 % with a confidence of 95 %; there is no curve over materials.steel.density";
+    let none = "probability  tip below -1 m in none of 12 runs: its mean probability in them is below 22.1 % with a confidence of 95 %; there is no curve over loads.tip.force";
     assert!(said.lines().any(|line| line == none), "{said}");
 
     let limit = f64::midpoint(tip[1], tip[2]);
     bench.write(
         "study.toml",
-        STUDY.replace("\"1 m\"", &format!("\"{limit:e} m\"")),
+        STUDY.replace("\"-1 m\"", &format!("\"{limit:e} m\"")),
     );
     let said = good(&bench, &["--collect"]);
     let line = said
         .lines()
         .find(|line| line.starts_with("probability"))
         .unwrap();
-    assert!(line.contains("50 % at 8500 kg/m3 ("), "{line}");
+    assert!(line.contains("50 % at 2.5 kN ("), "{line}");
     assert!(line.ends_with("; 6 of 12 runs"), "{line}");
     assert!(
-        said.contains("note         one value of materials.steel.density separates the runs"),
+        said.contains("note         one value of loads.tip.force separates the runs"),
         "{said}"
     );
     let read =
@@ -62,7 +62,7 @@ fn a_limit_is_chosen_after_the_runs() {
     assert_eq!(read("probability.csv").lines().count(), 5);
     let fit = read("probability-fit.csv");
     assert!(
-        fit.starts_with("runs,with_outcome,a,b,at_10 (kg/m3),"),
+        fit.starts_with("runs,with_outcome,a,b,at_10 (kN),"),
         "{fit}"
     );
     assert!(read("probability.1.svg").contains("logistic curve"));
@@ -72,15 +72,15 @@ fn a_limit_is_chosen_after_the_runs() {
     assert_eq!(case["fit"]["is_separated"], true);
     assert_eq!(case["points"][0]["runs"], 3);
     let at = case["fit"]["values"][1]["value"].as_f64().unwrap();
-    assert!((at / 8500.0 - 1.0).abs() < 1e-6, "{at}");
+    assert!((at / 2.5 - 1.0).abs() < 1e-6, "{at}");
 }
 
 #[test]
 fn a_limit_of_another_quantity_is_refused() {
-    let bench = bench(&STUDY.replace("\"1 m\"", "\"1 kg\""));
+    let bench = bench(&STUDY.replace("\"-1 m\"", "\"1 kg\""));
     let said = bad(&bench, &[], 2);
     assert!(
-        said.contains("study.toml:6: probability.above: '1 kg' is not a length"),
+        said.contains("study.toml:6: probability.below: '1 kg' is not a length"),
         "{said}"
     );
 }
