@@ -1,4 +1,4 @@
-//! Any bytes given to the STL reader.
+//! Any bytes given to the reader of files of triangles.
 #![no_main]
 
 #[path = "../../crates/io/tests/fuzz_bodies/read_stl.rs"]

@@ -13,7 +13,7 @@ use std::time::Instant;
 mod page;
 
 use dem_io::Body;
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::stages::stage::Stage;
@@ -278,11 +278,11 @@ fn main() {
 fn packed(diameters: &str) -> Body {
     let bytes = std::fs::read(SHAPE).expect("the shape is in the repository");
     let reading = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale: 1.0,
         fill_holes: false,
     };
-    let surface = surface_from_stl(&bytes, "", reading).expect("the shape is sound");
+    let surface = read_surface(&bytes, "", reading).expect("the shape is sound");
     let settings = BodySettings {
         packing: PackSettings {
             sizes: Sizes::parse(diameters, Basis::Number).expect("good diameters"),

@@ -20,7 +20,7 @@ use criterion::{
 };
 use dem_io::Body;
 use dem_io::body::vtp;
-use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
+use dem_io::surface::{ReadSettings, Surface, read_surface};
 use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use rayon::ThreadPool;
 
@@ -160,11 +160,11 @@ fn file(name: &str) -> Vec<u8> {
 }
 
 fn read(bytes: &[u8]) -> Surface {
-    surface_from_stl(
+    read_surface(
         bytes,
         "",
         ReadSettings {
-            unit_m: 1e-3,
+            unit_m: Some(1e-3),
             scale: 1.0,
             fill_holes: false,
         },

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use dem_io::Body;
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::stages::bonds::forces::bond_wrenches;
@@ -53,11 +53,11 @@ angular_velocity = [1.0, 0.0, 0.0]
 fn packed(diameters: &str) -> Body {
     let bytes = std::fs::read(SHAPE).expect("the shape is in the repository");
     let reading = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale: 1.0,
         fill_holes: false,
     };
-    let surface = surface_from_stl(&bytes, "", reading).expect("the shape is sound");
+    let surface = read_surface(&bytes, "", reading).expect("the shape is sound");
     let settings = BodySettings {
         packing: PackSettings {
             sizes: Sizes::parse(diameters, Basis::Number).expect("good diameters"),

@@ -1,8 +1,8 @@
 //! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an
 //! algorithm of either program.
 //!
-//! Data flow: STL bytes -> `stl` facets -> [`surface`] welded, oriented shells; [`body`] <->
-//! files. Lengths are metres unless a name says otherwise.
+//! Data flow: bytes of an STL, OBJ, PLY or 3MF -> facets ([`triangles`]) -> [`surface`] welded,
+//! oriented shells; [`body`] <-> files. Lengths are metres unless a name says otherwise.
 
 pub mod body;
 mod bounds;
@@ -20,6 +20,7 @@ pub mod sieve_curve;
 pub mod stl;
 pub mod surface;
 pub mod text;
+pub mod triangles;
 pub mod units;
 pub mod vtk;
 pub mod vtp;

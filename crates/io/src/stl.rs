@@ -11,54 +11,36 @@ mod precision;
 mod write;
 
 use crate::diagnostic::{Diagnostic, Result};
-use crate::units::significant;
 use ascii::begins_with_solid;
-pub(crate) use facets::Facets;
-use facets::{REMEDY_AGAIN, is_blank};
+use facets::is_blank;
+pub(crate) use facets::{Facets, REMEDY_AGAIN, REMEDY_OTHER, REMEDY_REPAIR};
+pub(crate) use precision::precision_note;
 pub use precision::single_precision_keeps;
-use precision::{MOST_MOVED, moved_by_single_precision};
-use std::io::{self, Cursor, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::io::{Cursor, Read, Seek, SeekFrom};
 pub use write::write_stl;
 
 /// Bytes of the header and the count of a binary file.
-const BINARY_START: usize = 84;
+pub(crate) const BINARY_START: usize = 84;
 /// Bytes of one facet of a binary file.
 const BINARY_FACET: usize = 50;
 /// Largest number of facets: three corners each must be numbered with 32 bits.
 const MOST_FACETS: usize = 1_000_000_000;
 
-/// Largest number of bytes of an STL that is no file of the disk, and of padding after the last
-/// facet there.
-const MOST_STREAM: u64 = 1 << 30;
-const MOST_PADDING: u64 = 1 << 20;
+/// Whether the bytes are those of an STL. `text` are those without marks of an encoding.
+pub(crate) fn is_stl(bytes: &[u8], text: &[u8]) -> bool {
+    binary_length(bytes) == Some(bytes.len()) || is_text(text) && begins_with_solid(text)
+}
 
-/// Largest distance of a corner from the middle of all, over that of the median corner.
-const MOST_APART: f64 = 1e9;
-
-/// The remedy for a file that is not truncated but of another type.
-const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
-
-/// Reads an ASCII or binary STL.
+/// Reads an ASCII or binary STL. `text` are the bytes without marks of an encoding.
 ///
 /// # Errors
-/// Not an STL, no facet, missing or too many bytes (zeros and blanks may follow the last facet of a
-/// binary file), a coordinate that is not a finite number, or ASCII that does not follow the
-/// grammar.
-pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
-    if bytes.is_empty() {
-        return Err(Diagnostic::input(
-            "",
-            "not an STL: the file is empty",
-            REMEDY_OTHER,
-        ));
+/// Not an STL, missing or too many bytes (zeros and blanks may follow the last facet of a binary
+/// file), a coordinate that is not a finite number, or ASCII that does not follow the grammar.
+pub(crate) fn read_facets(bytes: &[u8], text: &[u8]) -> Result<Facets> {
+    if binary_length(bytes) == Some(bytes.len()) {
+        return read_binary(bytes);
     }
-    let utf_16 = text_of_utf_16(bytes);
-    let text = utf_16.as_deref().unwrap_or(bytes);
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let facets = if binary_length(bytes) == Some(bytes.len()) {
-        read_binary(bytes)?
-    } else if is_text(text) {
+    if is_text(text) {
         if !begins_with_solid(text) {
             let start: String = String::from_utf8_lossy(&text[..text.len().min(20)])
                 .escape_debug()
@@ -69,30 +51,21 @@ pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
                 REMEDY_OTHER,
             ));
         }
-        ascii::read(text)?
-    } else if let Some(plain) = without_attributes(bytes) {
+        return ascii::read(text);
+    }
+    if let Some(plain) = without_attributes(bytes) {
         let mut facets = read_binary(&plain)?;
         facets.warnings.push(format!(
             "{} bytes of attributes after its facets were ignored.",
             bytes.len() - plain.len()
         ));
-        facets
-    } else {
-        let mut facets = read_binary(checked_binary(bytes)?)?;
-        let trailing = bytes.len() - BINARY_START - BINARY_FACET * facets.corners.len();
-        facets.warnings.push(format!(
-            "{trailing} bytes of padding after the last facet were ignored."
-        ));
-        facets
-    };
-    if facets.corners.is_empty() {
-        return Err(Diagnostic::input(
-            "",
-            "the STL contains no triangles",
-            "export the shape again",
-        ));
+        return Ok(facets);
     }
-    refuse_damaged(&facets.corners)?;
+    let mut facets = read_binary(checked_binary(bytes)?)?;
+    let trailing = bytes.len() - BINARY_START - BINARY_FACET * facets.corners.len();
+    facets.warnings.push(format!(
+        "{trailing} bytes of padding after the last facet were ignored."
+    ));
     Ok(facets)
 }
 
@@ -111,72 +84,8 @@ fn without_attributes(bytes: &[u8]) -> Option<Vec<u8>> {
     (rest.is_empty() && plain.len() < bytes.len()).then_some(plain)
 }
 
-/// Refuses a corner so far from all others that these would be a point beside it: a number of the
-/// file is damaged.
-fn refuse_damaged(corners: &[[[f64; 3]; 3]]) -> Result<()> {
-    let median = |mut all: Vec<f64>| {
-        let middle = all.len() / 2;
-        *all.select_nth_unstable_by(middle, f64::total_cmp).1
-    };
-    let of_axis = |k: usize| median(corners.iter().flatten().map(|corner| corner[k]).collect());
-    let middle = [0, 1, 2].map(of_axis);
-    let distance = |corner: &[f64; 3]| {
-        let [x, y, z] = [0, 1, 2].map(|k| corner[k] - middle[k]);
-        x.hypot(y).hypot(z)
-    };
-    let usual = median(corners.iter().flatten().map(distance).collect());
-    let limit = MOST_APART * usual;
-    for (index, facet) in corners.iter().enumerate() {
-        let far = facet.iter().position(|corner| distance(corner) > limit);
-        if let Some(at) = far.filter(|_| usual > 0.0) {
-            let [x, y, z] = facet[at].map(|x| significant(x, 3));
-            let problem = format!(
-                "corner {} is at ({x}, {y}, {z}), {} times as far from the middle as the others: the number is damaged",
-                at + 1,
-                significant(distance(&facet[at]) / usual, 2)
-            );
-            return Err(Diagnostic::input(
-                format!("triangle {} of {}", index + 1, corners.len()),
-                problem,
-                "repair or export the shape again",
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// The bytes of an STL that comes through a pipe or a device, which may have no end: reading stops
-/// where an STL of that beginning would end, and more bytes are refused.
-pub fn read_stream(input: &mut dyn Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    input.take(BINARY_START as u64).read_to_end(&mut bytes)?;
-    let is_binary = !is_text(&bytes) && text_of_utf_16(&bytes).is_none();
-    let end = match binary_length(&bytes) {
-        Some(length) if is_binary => (length as u64 + MOST_PADDING).min(MOST_STREAM),
-        _ => MOST_STREAM,
-    };
-    input
-        .take(end + 1 - bytes.len() as u64)
-        .read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > end {
-        return Err(io::Error::other(format!(
-            "it goes on after {end} bytes, where its first bytes let an STL end"
-        )));
-    }
-    Ok(bytes)
-}
-
-/// The bytes of an STL file; one that is no file of the disk, such as a named pipe, is read as by
-/// [`read_stream`].
-pub fn read_stl_file(path: &Path) -> io::Result<Vec<u8>> {
-    if std::fs::metadata(path)?.is_file() {
-        return std::fs::read(path);
-    }
-    read_stream(&mut std::fs::File::open(path)?)
-}
-
 /// Length according to the header of a binary file; `None` for fewer bytes than a header.
-fn binary_length(bytes: &[u8]) -> Option<usize> {
+pub(crate) fn binary_length(bytes: &[u8]) -> Option<usize> {
     let count: [u8; 4] = bytes.get(80..BINARY_START)?.try_into().ok()?;
     Some(BINARY_START + BINARY_FACET * u32::from_le_bytes(count) as usize)
 }
@@ -184,7 +93,7 @@ fn binary_length(bytes: &[u8]) -> Option<usize> {
 /// True if the beginning contains only bytes that occur in text. The count and the numbers of a
 /// binary file always contain others. Only a file that begins with "solid" may have letters beyond
 /// ASCII (in names), in any encoding.
-fn is_text(bytes: &[u8]) -> bool {
+pub(crate) fn is_text(bytes: &[u8]) -> bool {
     let beginning = &bytes[..bytes.len().min(4096)];
     let has_control = beginning
         .iter()
@@ -194,7 +103,7 @@ fn is_text(bytes: &[u8]) -> bool {
 
 /// A text in UTF-16, with or without a mark of the order of its bytes, in UTF-8; none if it is not
 /// one that begins like a text of ASCII.
-fn text_of_utf_16(bytes: &[u8]) -> Option<Vec<u8>> {
+pub(crate) fn text_of_utf_16(bytes: &[u8]) -> Option<Vec<u8>> {
     let is_big = match bytes.get(..4)? {
         [0xff, 0xfe, letter, 0] | [letter, 0, _, 0] if is_letter(*letter) => false,
         [0xfe, 0xff, 0, letter] | [0, letter, 0, _] if is_letter(*letter) => true,
@@ -213,19 +122,6 @@ fn text_of_utf_16(bytes: &[u8]) -> Option<Vec<u8>> {
 /// True for a byte with which a text can begin.
 fn is_letter(byte: u8) -> bool {
     byte.is_ascii_graphic() || is_blank(byte)
-}
-
-/// A note if the single precision of a binary file moves corners by a part of the size that shows
-/// in the volume.
-fn precision_note(corners: &[[[f64; 3]; 3]]) -> Option<String> {
-    let moved = moved_by_single_precision(corners.iter().flatten());
-    (moved.share_of_size > MOST_MOVED).then(|| {
-        format!(
-            "The numbers of a binary STL have seven digits: this far from the origin its corners may be off by {} units of the file, {} % of its size. Export it near the origin, or as text.",
-            significant(moved.by, 2),
-            significant(100.0 * moved.share_of_size, 2)
-        )
-    })
 }
 
 /// The part of a binary file with the length given in its header. An error for another type of
@@ -293,13 +189,14 @@ fn read_binary(bytes: &[u8]) -> Result<Facets> {
             return Err(Diagnostic::input(
                 format!("triangle {} of {count}", index + 1),
                 problem,
-                "repair or export the shape again",
+                REMEDY_REPAIR,
             ));
         }
         corners.push(facet);
     }
     Ok(Facets {
-        warnings: precision_note(&corners).into_iter().collect(),
+        unit_m: None,
+        warnings: precision_note(&corners, "STL").into_iter().collect(),
         corners,
     })
 }
@@ -329,6 +226,8 @@ impl Seek for NeverAscii<'_> {
 mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
+    use crate::triangles::{read_facets, read_stream};
+    use std::io;
 
     fn binary(header: &[u8], facets: &[[[f32; 3]; 3]]) -> Vec<u8> {
         let mut bytes = vec![b' '; 80];
@@ -345,13 +244,13 @@ mod tests {
     const FACET: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.0], [0.0, 1.0, -0.25]];
 
     fn problem(bytes: &[u8]) -> String {
-        read_facets(bytes).expect_err("refused").to_string()
+        read_facets(bytes, "").expect_err("refused").to_string()
     }
 
     #[test]
     fn a_binary_that_says_solid_is_binary() {
         for header in [&b"solid\n"[..], b"solid part\nfacet normal", b"SOLID"] {
-            let facets = read_facets(&binary(header, &[FACET, FACET])).unwrap();
+            let facets = read_facets(&binary(header, &[FACET, FACET]), "").unwrap();
             assert_eq!(facets.corners, vec![FACET.map(|v| v.map(f64::from)); 2]);
             assert!(facets.warnings.is_empty());
         }
@@ -361,7 +260,7 @@ mod tests {
     fn padding_is_ignored_with_a_warning_and_other_bytes_are_refused() {
         let mut bytes = binary(b"", &[FACET]);
         bytes.extend(b"\r\n\0\0");
-        let facets = read_facets(&bytes).unwrap();
+        let facets = read_facets(&bytes, "").unwrap();
         assert_eq!((facets.corners.len(), facets.warnings.len()), (1, 1));
         assert!(facets.warnings[0].starts_with("4 bytes"));
         bytes.push(7);
@@ -383,8 +282,8 @@ mod tests {
         assert!(problem(&[0xee; 500]).starts_with("not an STL, or truncated"));
         assert!(problem(b"").starts_with("not an STL"));
         assert!(
-            problem(b"ply\nformat ascii 1.0\n")
-                .starts_with("not an STL: it is text that begins with 'ply")
+            problem(b"hello\nformat ascii 1.0\n")
+                .starts_with("not an STL: it is text that begins with 'hello")
         );
         assert!(problem(b"solidworks").starts_with("not an STL"));
         assert!(problem(&binary(b"", &[])).starts_with("the STL contains no triangles"));
@@ -419,9 +318,9 @@ mod tests {
             }
             bytes
         };
-        let wanted = read_facets(&plain).unwrap().corners;
+        let wanted = read_facets(&plain, "").unwrap().corners;
         for lengths in [[4, 4], [0, 9], [300, 0]] {
-            let facets = read_facets(&with(lengths)).unwrap();
+            let facets = read_facets(&with(lengths), "").unwrap();
             assert_eq!(facets.corners, wanted);
             let count = lengths[0] + lengths[1];
             assert!(
@@ -433,7 +332,7 @@ mod tests {
         // Colours in the place of the count, and nothing that follows.
         let mut coloured = plain.clone();
         coloured[BINARY_START + BINARY_FACET - 1] = 0x80;
-        assert!(read_facets(&coloured).unwrap().warnings.is_empty());
+        assert!(read_facets(&coloured, "").unwrap().warnings.is_empty());
         // Not all of them are there.
         let cut = with([4, 4]);
         assert!(problem(&cut[..cut.len() - 1]).contains("bytes too many"));
@@ -450,7 +349,7 @@ mod tests {
         );
         // A long needle is none.
         facet[1] = [1e6, 0.0, 0.0];
-        assert!(read_facets(&binary(b"", &[FACET, FACET, facet])).is_ok());
+        assert!(read_facets(&binary(b"", &[FACET, FACET, facet]), "").is_ok());
     }
 
     #[test]
@@ -470,7 +369,7 @@ mod tests {
     fn a_binary_far_from_the_origin_has_a_note() {
         let note = |offset: f32| {
             let far = FACET.map(|corner| corner.map(|x| x + offset));
-            read_facets(&binary(b"", &[far])).unwrap().warnings
+            read_facets(&binary(b"", &[far]), "").unwrap().warnings
         };
         assert!(note(0.0).is_empty() && note(1e2).is_empty());
         // The numbers from 2^19 to 2^20 are 1/16 apart.
@@ -486,6 +385,6 @@ mod tests {
         let mut bytes = binary(b"", &[FACET]);
         bytes[84..96].fill(0xff);
         bytes[132..134].fill(0xff);
-        assert_eq!(read_facets(&bytes).unwrap().corners.len(), 1);
+        assert_eq!(read_facets(&bytes, "").unwrap().corners.len(), 1);
     }
 }

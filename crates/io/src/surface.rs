@@ -25,6 +25,6 @@ mod union_volume;
 mod warnings;
 mod weld;
 
-pub use build::{ReadSettings, surface_from_stl};
+pub use build::{ReadSettings, read_surface};
 pub use open::{OpenSurface, read_open_surface};
 pub use solid::{Repairs, Shell, Surface};

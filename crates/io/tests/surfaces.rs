@@ -4,17 +4,19 @@
 mod body;
 mod crossings;
 mod files;
+mod formats;
 mod gaps;
 mod properties;
 mod shells;
 mod solids;
+mod written;
 
 use body::assert_solid;
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 use dem_io::{Diagnostic, Surface};
 
 const METRES: ReadSettings = ReadSettings {
-    unit_m: 1.0,
+    unit_m: Some(1.0),
     scale: 1.0,
     fill_holes: false,
 };
@@ -30,7 +32,7 @@ fn shape_bytes(name: &str) -> Vec<u8> {
 
 fn read(bytes: &[u8], settings: ReadSettings) -> Surface {
     let surface =
-        surface_from_stl(bytes, "part.stl", settings).unwrap_or_else(|error| panic!("{error}"));
+        read_surface(bytes, "part.stl", settings).unwrap_or_else(|error| panic!("{error}"));
     assert_solid(&surface);
     surface
 }
@@ -40,7 +42,7 @@ fn shape(name: &str) -> Surface {
 }
 
 fn refusal(bytes: &[u8], settings: ReadSettings) -> Diagnostic {
-    let error = surface_from_stl(bytes, "part.stl", settings).expect_err("a refusal");
+    let error = read_surface(bytes, "part.stl", settings).expect_err("a refusal");
     assert_eq!(error.exit_code(), 2);
     assert!(
         error.place.starts_with("part.stl") && !error.remedy.is_empty(),

@@ -16,6 +16,7 @@ mod fit;
 mod head;
 mod largest;
 mod list;
+pub mod logistic;
 mod material;
 mod mean_curve;
 mod numbers;

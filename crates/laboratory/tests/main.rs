@@ -6,6 +6,7 @@ mod drop_weight;
 mod drop_weight_sheets;
 mod failure_line;
 mod files;
+mod logistic;
 mod student;
 mod synthetic;
 mod theory;

@@ -5,7 +5,7 @@
 //! ```
 
 use dem_io::body::write_body;
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
 use std::io::Write;
 use std::path::Path;
@@ -17,11 +17,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let shapes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/shapes");
     let stl = std::fs::read(shapes.join("tablet.stl"))?;
     let reading = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale: 1.0,
         fill_holes: false,
     };
-    let surface = surface_from_stl(&stl, "tablet.stl", reading)?;
+    let surface = read_surface(&stl, "tablet.stl", reading)?;
 
     // The spheres and their bonds.
     let sizes = Sizes::parse("0.6mm..0.9mm", Basis::Number)?;

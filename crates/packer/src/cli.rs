@@ -17,6 +17,7 @@ use crate::sizes::Sizes;
 use clap::CommandFactory;
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
 use dem_io::safe_write::remove_unfinished;
+use dem_io::triangles::is_named_so;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Diagnostic, Result};
 use dem_terminal::program::{print_completions, print_man_page, take_size_limits_as_errors};
@@ -67,11 +68,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 }
 
 fn pack_command(arguments: &PackArguments) -> Result<()> {
-    let Some(stl) = &arguments.stl else {
-        return Err(Diagnostic::input("", "no STL file was given", ""));
+    let Some(shape) = &arguments.shape else {
+        return Err(Diagnostic::input("", "no shape was given", ""));
     };
     let output = arguments.output.as_deref().unwrap_or(Path::new("-"));
-    check_output(output, stl, arguments.diameter.as_deref())?;
+    check_output(output, shape, arguments.diameter.as_deref())?;
     if arguments.json && output == Path::new("-") {
         return Err(Diagnostic::input(
             "--json",
@@ -82,16 +83,16 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
     let settings = arguments.checked()?;
     // The complete job runs in the pool: a parallel loop started outside it puts the calling thread
     // to sleep and wakes it again.
-    thread_pool(arguments.threads)?.install(|| pack_and_write(stl, arguments, &settings, output))
+    thread_pool(arguments.threads)?.install(|| pack_and_write(shape, arguments, &settings, output))
 }
 
 fn pack_and_write(
-    stl: &Path,
+    shape: &Path,
     arguments: &PackArguments,
     settings: &BodySettings,
     output: &Path,
 ) -> Result<()> {
-    let surface = read_surface(stl, &arguments.reading)?;
+    let surface = read_surface(shape, &arguments.reading)?;
     check_unit_of_diameter(
         arguments.diameter.as_deref(),
         &settings.packing.sizes,
@@ -159,13 +160,13 @@ pub fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
 }
 
 /// Checks before the work whether the body can be written.
-fn check_output(output: &Path, stl: &Path, diameter: Option<&str>) -> Result<()> {
+fn check_output(output: &Path, shape: &Path, diameter: Option<&str>) -> Result<()> {
     let files = body_files(output)?;
     for file in &files {
         need_folder_of(file)?;
     }
     let sieve = diameter.and_then(Sizes::file).map(PathBuf::from);
-    let read: Vec<PathBuf> = sieve.into_iter().chain([stl.to_owned()]).collect();
+    let read: Vec<PathBuf> = sieve.into_iter().chain([shape.to_owned()]).collect();
     refuse_to_replace(&files, &read)?;
     if output == Path::new("-") && std::io::stdout().is_terminal() {
         return Err(Diagnostic::input(
@@ -178,10 +179,7 @@ fn check_output(output: &Path, stl: &Path, diameter: Option<&str>) -> Result<()>
 }
 
 fn info(file: &Path, reading: &Reading, json: bool) -> Result<()> {
-    if file
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("stl"))
-    {
+    if is_named_so(file) {
         let surface = read_surface(file, reading)?;
         if json {
             return write_standard_json(&surface_summary(&surface));

@@ -19,9 +19,9 @@ mod winding;
 #[cfg(test)]
 pub(crate) fn surface_in_mm(stl: &[u8]) -> dem_io::Result<dem_io::Surface> {
     let settings = dem_io::surface::ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale: 1.0,
         fill_holes: false,
     };
-    dem_io::surface::surface_from_stl(stl, "shape", settings)
+    dem_io::surface::read_surface(stl, "shape", settings)
 }

@@ -1,16 +1,16 @@
-//! Fills the solid of an STL file with overlapping spheres and joins them by bonds.
+//! Fills the solid of an STL, OBJ, PLY or 3MF file with overlapping spheres and joins them by bonds.
 //!
 //! [`pack()`] gives the spheres of a [`dem_io::Surface`] in its local units, [`make_body`] a
 //! complete body in metres with its bonds and a report on its quality. The spheres are placed by an
 //! advancing front (Lozano et al. 2016; Platzer 2022) and settled.
 //!
 //! ```
-//! use dem_io::surface::{ReadSettings, surface_from_stl};
+//! use dem_io::surface::{ReadSettings, read_surface};
 //! use dem_pack::{Basis, PackSettings, Sizes, pack};
 //!
 //! let stl = std::fs::read("../../data/shapes/bar.stl")?;
-//! let reading = ReadSettings { unit_m: 1e-3, scale: 1.0, fill_holes: false };
-//! let surface = surface_from_stl(&stl, "bar.stl", reading)?;
+//! let reading = ReadSettings { unit_m: Some(1e-3), scale: 1.0, fill_holes: false };
+//! let surface = read_surface(&stl, "bar.stl", reading)?;
 //! let sizes = Sizes::parse("6mm..8mm", Basis::Number)?;
 //! let packing = pack(&surface, &PackSettings::new(sizes), &|_stage, _done| Ok(()))?;
 //! assert!(packing.spheres.radii.len() > 200);

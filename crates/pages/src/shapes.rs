@@ -1,6 +1,6 @@
 //! Shapes of `data/shapes`, and spheres for them.
 
-use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
+use dem_io::surface::{ReadSettings, Surface, read_surface};
 use dem_pack::{Basis, Sizes};
 
 use crate::bench::{Failed, root};
@@ -14,11 +14,11 @@ pub(crate) fn shape(name: &str, scale: f64) -> Result<Surface, Failed> {
 /// As [`shape`], from the bytes of a file.
 pub(crate) fn surface_of(stl: &[u8], name: &str, scale: f64) -> Result<Surface, Failed> {
     let reading = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale,
         fill_holes: false,
     };
-    Ok(surface_from_stl(stl, name, reading)?)
+    Ok(read_surface(stl, name, reading)?)
 }
 
 /// Diameters by number.

@@ -116,7 +116,7 @@ fn region(entry: &SceneRegion) -> Result<Region> {
         },
         SceneRegion::Stl { file, unit_m } => {
             let name = file.display().to_string();
-            let surface = surface_of(file, *unit_m)?;
+            let surface = surface_of(file, *unit_m, 1.0)?;
             let open_edges = Mesh::from_surface(&surface)?.content.open_edges;
             if open_edges > 0 {
                 return Err(Diagnostic::input(

@@ -145,15 +145,19 @@ pub(super) fn standing(entry: &SceneWall, name: &str) -> Result<(Shape, Frame)> 
 
 /// The shape in the wall's own frame, whose origin is the pivot.
 fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape> {
-    entry.shape.in_frame_of(entry.pivot_m, |path, unit_m| {
-        let mut surface = surface_of(path, unit_m)?;
-        for vertex in &mut surface.vertices_m {
-            *vertex = [0, 1, 2].map(|k| vertex[k] - entry.pivot_m[k]);
-        }
-        let mesh = Mesh::from_surface(&surface)?;
-        notes.extend(surface_warnings(&surface, &mesh).map(|odd| format!("wall '{name}': {odd}")));
-        Ok(mesh)
-    })
+    entry
+        .shape
+        .in_frame_of(entry.pivot_m, |path, unit_m, scale| {
+            let mut surface = surface_of(path, unit_m, scale)?;
+            for vertex in &mut surface.vertices_m {
+                *vertex = [0, 1, 2].map(|k| vertex[k] - entry.pivot_m[k]);
+            }
+            let mesh = Mesh::from_surface(&surface)?;
+            notes.extend(
+                surface_warnings(&surface, &mesh).map(|odd| format!("wall '{name}': {odd}")),
+            );
+            Ok(mesh)
+        })
 }
 
 /// Refuses a belt whose surface velocity has a component normal to its plane.

@@ -24,7 +24,8 @@ table_schema! {
     table("sphere", &SPHERE);
     /// A cylinder.
     table("cylinder", &CYLINDER);
-    /// STL file of a closed surface, relative to the folder of the scene; requires `unit`.
+    /// File of a closed surface of triangles (STL, OBJ, PLY or 3MF), relative to the folder of the
+    /// scene; requires `unit`, but for a 3MF.
     text("stl", "a file");
     UNIT;
 }
@@ -43,8 +44,8 @@ pub enum Region {
     Stl {
         /// `stl`: the file, resolved against the folder of the scene.
         file: PathBuf,
-        /// `unit`: size of the file's unit, m.
-        unit_m: f64,
+        /// `unit`: size of the file's unit, m. None: the file says so, as a 3MF does.
+        unit_m: Option<f64>,
     },
 }
 

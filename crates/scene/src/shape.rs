@@ -10,6 +10,7 @@ use super::plain_table::plain_table;
 use super::schema::{Key, Kind, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
+use dem_io::triangles::has_unit_by_name;
 use dem_io::units::{LENGTH, length_unit_m};
 
 plain_table! {
@@ -57,7 +58,7 @@ pub(super) const UNIT: Key = Key::new(
         Kind::Word(|| words_of(LENGTH.units)),
         Kind::Text("a unit of length"),
     ]),
-    "Unit of length of the STL file; required with `stl`.",
+    "Unit of length of the file; required with `stl`, but for a 3MF, which has its own.",
 )
 .sometimes_required("\"mm\", the file's unit of length");
 
@@ -102,11 +103,19 @@ pub(super) fn read_cylinder(field: &Field<'_>) -> Result<CylinderShape> {
     CylinderShape::read(&table)
 }
 
-/// The file of triangles named by `field`, a key of `table`, and the size of the file's `unit`, m.
-pub(super) fn stl(field: &Field<'_>, table: &Table<'_>, folder: &Path) -> Result<(PathBuf, f64)> {
+/// The file of triangles named by `field`, a key of `table`, and the size of the file's `unit`, m,
+/// which a 3MF need not have here.
+pub(super) fn stl(
+    field: &Field<'_>,
+    table: &Table<'_>,
+    folder: &Path,
+) -> Result<(PathBuf, Option<f64>)> {
     let path = named_path(field, folder)?;
     if path.as_os_str() == "-" {
         return Err(field.wrong("a file", "write a name such as \"plate.stl\""));
+    }
+    if has_unit_by_name(&path) && table.get("unit").is_none() {
+        return Ok((path, None));
     }
     let unit = table.need("unit")?;
     let Ok(name) = unit.text() else {
@@ -116,7 +125,7 @@ pub(super) fn stl(field: &Field<'_>, table: &Table<'_>, folder: &Path) -> Result
         let problem = format!("{}: {}", unit.path, error.problem);
         unit.refuse(problem, error.remedy)
     })?;
-    Ok((path, unit_m))
+    Ok((path, Some(unit_m)))
 }
 
 /// Refuses `keys`, which apply to `stl`, if the shape is `key`.
@@ -134,7 +143,10 @@ pub(super) fn refuse_without_stl(
     }
 }
 
-pub(super) fn list_stl(file: &Path, unit_m: f64, listing: &mut Listing) {
+pub(super) fn list_stl(file: &Path, unit_m: Option<f64>, listing: &mut Listing) {
     listing.text("stl", file.display().to_string());
-    listing.text("unit", quantity(unit_m, "m"));
+    let unit = unit_m.map_or("that of the file".to_owned(), |unit_m| {
+        quantity(unit_m, "m")
+    });
+    listing.text("unit", unit);
 }

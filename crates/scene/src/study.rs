@@ -8,6 +8,7 @@ mod find;
 pub(super) mod keys;
 mod measures;
 mod pack;
+mod probability;
 mod read;
 mod rewrite;
 mod values;
@@ -15,8 +16,8 @@ mod values;
 pub use check::{override_text, reference_values, scene_with, settle_references, value_to_find};
 pub use contents::{
     Average, Axis, AxisValue, BODY, Combine, Design, DesignKind, DesignRange, Find, Keep,
-    MeasureOf, PACK, Pieces, RUN_RESULTS, Reference, RunTime, STUDY_VERSION, Setting, Study,
-    StudyMeasure,
+    MeasureOf, PACK, Pieces, Probability, RUN_RESULTS, Reference, RunTime, STUDY_VERSION, Setting,
+    Study, StudyMeasure,
 };
 pub(crate) use keys::STUDY;
 pub use pack::Pack;

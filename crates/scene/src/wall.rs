@@ -39,10 +39,11 @@ table_schema! {
     table("box", &BOX);
     /// A solid cylinder, with particles outside.
     table("cylinder", &CYLINDER);
-    /// STL file of the surface, relative to the folder of the scene; requires `unit`.
+    /// File of the surface's triangles (STL, OBJ, PLY or 3MF), relative to the folder of the scene;
+    /// requires `unit`, but for a 3MF.
     text("stl", "a file");
     UNIT;
-    /// Factor on all lengths of the STL file.
+    /// Factor on all lengths of the file.
     number("scale").positive().or(1.0);
     /// Its material.
     text("material", "a name in [materials]").required("\"NAME\", a name in [materials]");
@@ -94,8 +95,8 @@ pub enum WallShape {
     Stl {
         /// `stl`: the file, resolved against the folder of the scene.
         path: PathBuf,
-        /// `unit`: size of the file's unit, m.
-        unit_m: f64,
+        /// `unit`: size of the file's unit, m. None: the file says so, as a 3MF does.
+        unit_m: Option<f64>,
         /// `scale`: a factor on all lengths, 1 unless given.
         scale: f64,
     },
@@ -135,12 +136,12 @@ pub struct Wall {
 }
 
 impl WallShape {
-    /// The shape in a frame whose origin is the pivot, m. `read` gives the surface in a file whose
-    /// unit is this, m, in that frame.
+    /// The shape in a frame whose origin is the pivot, m. `read` gives the surface in a file with
+    /// this unit, m, or its own, and this scale, in that frame.
     pub fn in_frame_of(
         &self,
         pivot_m: [f64; 3],
-        read: impl FnOnce(&Path, f64) -> Result<Mesh>,
+        read: impl FnOnce(&Path, Option<f64>, f64) -> Result<Mesh>,
     ) -> Result<Shape> {
         let from_pivot = |point: [f64; 3]| [0, 1, 2].map(|k| point[k] - pivot_m[k]);
         Ok(match self {
@@ -158,7 +159,7 @@ impl WallShape {
                 path,
                 unit_m,
                 scale,
-            } => Shape::Mesh(read(path, unit_m * scale)?),
+            } => Shape::Mesh(read(path, *unit_m, *scale)?),
         })
     }
 

@@ -1,6 +1,7 @@
 //! Studies: valid contents, refusals, and scenes written with their values.
 
 mod designs;
+mod probabilities;
 mod searches;
 
 use std::path::Path;

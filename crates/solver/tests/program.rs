@@ -47,6 +47,7 @@ mod sweep;
 mod threads;
 mod unstable;
 mod verdict;
+mod wall_files;
 mod wall_frames;
 mod wall_loads;
 mod zones;

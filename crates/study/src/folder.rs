@@ -32,13 +32,15 @@ pub(crate) const SNAKEFILE: &str = "Snakefile";
 const DONE: &str = "done";
 
 /// Files of which a sweep makes one each, besides [`IDENTITY`].
-const TABLES: [&str; 9] = [
+const TABLES: [&str; 11] = [
     COMMANDS,
     SLURM,
     SNAKEFILE,
     "sweep.csv",
     "responses.csv",
     "find.csv",
+    "probability.csv",
+    "probability-fit.csv",
     "effects.csv",
     "sweep.json",
     "sweep.html",

@@ -6,7 +6,8 @@
 //! -> `table` medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s and
 //! [`response_plot`]s, [`want`] the fastest run that is accurate enough. [`search`] adds points to
 //! the study until the value that is looked for is found. A [`design`] moves parameters within
-//! ranges ([`morris`], [`one_at_a_time`]); the [`ranking`] shows what each of them changes.
+//! ranges ([`morris`], [`one_at_a_time`]); the [`ranking`] shows what each of them changes. The
+//! [`probability`] of an outcome is a curve over a parameter.
 
 mod chance;
 pub mod cluster;
@@ -30,6 +31,8 @@ pub mod outcome;
 pub mod packings;
 pub mod page;
 pub mod plot;
+pub mod probability;
+pub mod probability_page;
 pub mod ranking;
 pub(crate) mod ranking_page;
 pub mod ranking_plot;

@@ -5,6 +5,7 @@ use dem_plots::{Column, Page, Table};
 
 use super::curves;
 use super::plot::plot;
+use super::probability_page;
 use super::ranking_page;
 use super::response_page;
 use super::row::{Judged, Row};
@@ -37,6 +38,7 @@ pub fn page(table: &SweepTable) -> String {
         );
     }
     response_page::add_search(&mut page, table);
+    probability_page::add_probability(&mut page, table);
     if let Some(design) = &table.design {
         ranking_page::add_design(&mut page, table, design);
     }

@@ -200,7 +200,7 @@ fn series(table: &SweepTable, over: usize) -> Option<usize> {
     of_page.or(others.first().copied())
 }
 
-fn horizontal(axis: &AxisColumn) -> Axis {
+pub(crate) fn horizontal(axis: &AxisColumn) -> Axis {
     let Some(numbers) = &axis.numbers else {
         return Axis::named(&in_words(&axis.name), axis.values.clone());
     };

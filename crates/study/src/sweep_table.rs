@@ -4,6 +4,7 @@ use dem_scene::study::Average;
 use serde::Serialize;
 
 use super::increase_table::IncreaseTable;
+use super::probability::Probability;
 use super::ranking::DesignTable;
 use super::response::Response;
 use super::row::Row;
@@ -45,6 +46,9 @@ pub struct SweepTable {
     pub responses: Vec<Response>,
     /// The search for a value, once for each case.
     pub find: Option<Search>,
+    /// The probability of an outcome. None: the study has no `[probability]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probability: Option<Probability>,
     /// What the parameters of `[design]` change. None: the study has no such table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub design: Option<DesignTable>,

@@ -14,6 +14,7 @@ use super::judge::{in_words, judge};
 use super::median::median;
 use super::order::orders;
 use super::outcome::{Done, Outcome, Reading};
+use super::probability::Probability;
 use super::ranking::design_table;
 use super::response::{Response, responses};
 use super::row::{Judged, Row};
@@ -25,7 +26,8 @@ const LEAST_SPREAD: f64 = 0.1;
 
 impl SweepTable {
     /// `outcomes`: for each run, those of its repeats. `values`: the reference of each measure, if
-    /// the study gives it as a number. `looked_for`: the value of `[find]`.
+    /// the study gives it as a number. `looked_for`: the value of `[find]`, or the limit of
+    /// `[probability]`.
     pub fn new(
         study: &Study,
         runs: &[Run],
@@ -57,6 +59,8 @@ impl SweepTable {
         notes.extend(chance::notes(study, &responses));
         let (find, of_search) = found(study, &responses, looked_for).unzip();
         notes.extend(of_search.unwrap_or_default());
+        let probability = Probability::of(study, &rows, looked_for);
+        notes.extend(probability.iter().flat_map(Probability::notes));
         let (design, of_design) = design_table(study, &rows).unzip();
         notes.extend(of_design.unwrap_or_default());
         let failure_line = failure_line(study, &rows);
@@ -84,6 +88,7 @@ impl SweepTable {
             runs: rows,
             responses,
             find,
+            probability,
             design,
             failure_line,
             increase_tables,

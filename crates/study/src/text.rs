@@ -7,6 +7,7 @@ use dem_io::units::significant;
 use dem_scene::study::Average;
 
 use super::csv_line::{line, number};
+use super::probability::Probability;
 use super::ranking_text::write_design;
 use super::response::Response;
 use super::response_plot::{average, named, shown_axes};
@@ -144,7 +145,7 @@ pub fn find_csv(table: &SweepTable, search: &Search) -> String {
 }
 
 /// The heading of a parameter in a table.
-fn heading(axis: &AxisColumn) -> String {
+pub(crate) fn heading(axis: &AxisColumn) -> String {
     match axis.numbers_in_tables() {
         Some(_) => with_unit(&axis.name, &axis.unit),
         None => axis.name.clone(),
@@ -152,7 +153,7 @@ fn heading(axis: &AxisColumn) -> String {
 }
 
 /// A value of a parameter in a table: a number in the unit of its heading, or as written.
-fn cell(table: &SweepTable, axis: usize, at: usize) -> String {
+pub(crate) fn cell(table: &SweepTable, axis: usize, at: usize) -> String {
     let column = &table.axes[axis];
     match column.numbers_in_tables() {
         Some(numbers) => number(numbers.get(at).copied()),
@@ -234,6 +235,19 @@ fn write_search(f: &mut fmt::Formatter<'_>, table: &SweepTable, search: &Search)
     cut(f, lines)
 }
 
+fn write_probability(
+    f: &mut fmt::Formatter<'_>,
+    table: &SweepTable,
+    of: &Probability,
+) -> fmt::Result {
+    let measure = &table.measures[of.measure].name;
+    let lines = of.cases.iter().map(|case| {
+        let words = of.in_words(case, measure);
+        format!("probability  {}", visible(&words))
+    });
+    cut(f, lines)
+}
+
 /// The front of a measure with this reference.
 fn write_front(
     f: &mut fmt::Formatter<'_>,
@@ -299,6 +313,9 @@ impl fmt::Display for SweepTable {
         }
         if let Some(search) = &self.find {
             write_search(f, self, search)?;
+        }
+        if let Some(of) = &self.probability {
+            write_probability(f, self, of)?;
         }
         for (at, measure) in self.measures.iter().enumerate() {
             if let Some(reference) = &measure.reference {

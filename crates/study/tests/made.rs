@@ -50,7 +50,9 @@ pub(crate) fn table_of(study: &Study, outcomes: impl Fn(&Run) -> Vec<Outcome>) -
         _ => None,
     });
     let references: Vec<Option<f64>> = references.collect();
-    let looked_for = study.find.as_ref().map(|find| number(&find.value));
+    let of_find = study.find.as_ref().map(|find| &find.value);
+    let of_probability = study.probability.as_ref().map(|of| &of.limit);
+    let looked_for = of_find.or(of_probability).map(|text| number(text));
     SweepTable::new(study, &runs, &outcomes, &references, looked_for)
 }
 

@@ -10,6 +10,7 @@ mod increase_table;
 mod made;
 mod morris;
 mod orders;
+mod probability;
 mod ranking;
 mod repeats;
 mod responses;

@@ -1,6 +1,6 @@
 """Breakage of particles with the discrete element method.
 
-`pack` fills an STL shape with bonded spheres, `run` simulates a scene, `sweep` a scene with many
+`pack` fills a shape with bonded spheres, `run` simulates a scene, `sweep` a scene with many
 settings, `read` and `read_sweep` open their folders, `check` examines a scene without running it,
 `command` runs any other command of the programs `dem-pack` and `dem-run`, which come with this
 package.

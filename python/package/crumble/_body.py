@@ -104,11 +104,11 @@ class Body:
 
 
 def pack(
-    stl: str | os.PathLike[str],
+    shape: str | os.PathLike[str],
     diameter: str | float,
     *,
     out: str | os.PathLike[str] | None = None,
-    unit: str = "mm",
+    unit: str | None = None,
     scale: float = 1.0,
     fill_holes: bool = False,
     basis: Literal["number", "mass"] = "number",
@@ -124,7 +124,8 @@ def pack(
     threads: int | None = None,
     progress: bool | Progress = False,
 ) -> Body:
-    """Fills the shape of an STL file with spheres and joins them by bonds, as `dem-pack` does.
+    """Fills the shape of an STL, OBJ, PLY or 3MF file with spheres and joins them by bonds, as
+    `dem-pack` does.
 
     `diameter` is as for `--diameter`: "2.5mm", "2mm..3mm", "lognormal:2.5mm,0.3mm,1.5mm..4mm",
     "sieve:FILE.csv", ...; a number is metres. The settings are the options of `dem-pack` (see
@@ -156,9 +157,9 @@ def pack(
     if fill_holes:
         arguments.append("--fill-holes")
     with arguments_of_python(), shown(progress) as tell:
-        stored, report = _crumble.pack([*arguments, "--", os.fspath(stl)], out, threads, tell)
+        stored, report = _crumble.pack([*arguments, "--", os.fspath(shape)], out, threads, tell)
     body = Body(stored, None if out is None else Path(out), json.loads(report))
-    warn_of_doubts(os.fspath(stl), body.warnings)
+    warn_of_doubts(os.fspath(shape), body.warnings)
     return body
 
 

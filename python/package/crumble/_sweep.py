@@ -50,6 +50,20 @@ class Sweep:
         return self._table("find.csv", "the study has no [find]")
 
     @cached_property
+    def probability(self) -> pd.DataFrame:
+        """`probability.csv`: a row for each case and value of the parameter of `[probability]`: the
+        fraction of the runs with the outcome, and the curve there, with their 95 % intervals.
+        """
+        return self._table("probability.csv", "the study has no [probability]")
+
+    @cached_property
+    def probability_fit(self) -> pd.DataFrame:
+        """`probability-fit.csv`: a row for each case of `[probability]`: the curve, and the values
+        of the parameter at 10, 50 and 90 % with the ends of their 95 % intervals.
+        """
+        return self._table("probability-fit.csv", "the study has no [probability]")
+
+    @cached_property
     def effects(self) -> pd.DataFrame:
         """`effects.csv`: a row for each measure and parameter of `[design]`, by rank: what the
         parameter changes, and whether that is more than chance.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dem_io::Body;
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 
 /// A shape of the repository as STL, in mm.
@@ -16,11 +16,11 @@ pub(crate) fn shape(name: &str) -> Vec<u8> {
 /// spheres that overlap.
 pub(crate) fn packed(stl: &[u8], diameters: &str, overlap: f64, bonds: Option<f64>) -> Body {
     let reading = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale: 1.0,
         fill_holes: false,
     };
-    let surface = surface_from_stl(stl, "", reading).expect("the shape is sound");
+    let surface = read_surface(stl, "", reading).expect("the shape is sound");
     let sizes = Sizes::parse(diameters, Basis::Number).expect("good diameters");
     let settings = BodySettings {
         packing: PackSettings {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use dem_io::Body;
-use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
+use dem_io::surface::{ReadSettings, Surface, read_surface};
 use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use nalgebra::Vector3;
 
@@ -124,11 +124,11 @@ struct Packed {
 fn packed(shape: Shape, overlap: f64, settle: Option<f64>) -> Packed {
     let file = root().join(format!("data/shapes/{}.stl", shape.name));
     let reading = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale: 1.0,
         fill_holes: false,
     };
-    let surface = surface_from_stl(&std::fs::read(file).unwrap(), shape.name, reading).unwrap();
+    let surface = read_surface(&std::fs::read(file).unwrap(), shape.name, reading).unwrap();
     let [small, large] = shape.diameters_m.map(|diameter| 1e3 * diameter);
     let sizes = Sizes::parse(&format!("{small}mm..{large}mm"), Basis::Number).unwrap();
     let packing = PackSettings {

@@ -14,6 +14,7 @@ use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::input_file::{BUFFER_BYTES, explain_read, open_input};
 use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
+use crate::triangles::is_named_so;
 
 /// The form in which a body is stored, with the names of its files.
 enum Storage {
@@ -286,10 +287,9 @@ pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     }
 }
 
-/// Refuses an STL file where a body is read.
+/// Refuses a file of triangles where a body is read.
 fn refuse_shape(path: &Path) -> Result<()> {
-    let ending = path.extension().unwrap_or_default();
-    if !ending.eq_ignore_ascii_case("stl") {
+    if !is_named_so(path) {
         return Ok(());
     }
     let name = path.display().to_string();

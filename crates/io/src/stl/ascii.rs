@@ -3,8 +3,9 @@
 //! are skipped: many programs write them wrongly or not at all. Comments, `end loop` in two words
 //! and files of one line are read as well.
 
-use super::facets::{Facets, REMEDY_AGAIN, is_blank};
+use super::facets::{Facets, REMEDY_AGAIN, REMEDY_REPAIR, is_blank};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::triangles::words::{finite, shown};
 
 /// Reads the facets of all `solid` blocks in `text`, which begins with "solid" after comments.
 pub(super) fn read(text: &[u8]) -> Result<Facets> {
@@ -89,27 +90,10 @@ fn read_loop(words: &mut Words, number: usize) -> Result<[[f64; 3]; 3]> {
 }
 
 fn finite_number(words: &Words, word: &[u8], facet: usize) -> Result<f64> {
-    let value = std::str::from_utf8(word).ok().and_then(number);
-    let place = format!("line {}, triangle {facet}", words.line);
-    match value {
-        Some(value) if value.is_finite() => Ok(value),
-        Some(_) => Err(Diagnostic::input(
-            place,
-            format!("coordinate '{}' is not a finite number", shown(word)),
-            "repair or export the shape again",
-        )),
-        None => Err(Diagnostic::input(
-            place,
-            format!("coordinate '{}' is not a number", shown(word)),
-            "repair or export the shape again",
-        )),
-    }
-}
-
-/// A number, also with the exponent of Fortran: 1.5D+02.
-fn number(text: &str) -> Option<f64> {
-    let parsed = text.parse().ok();
-    parsed.or_else(|| text.replacen(['d', 'D'], "e", 1).parse().ok())
+    finite(word).map_err(|problem| {
+        let place = format!("line {}, triangle {facet}", words.line);
+        Diagnostic::input(place, problem, REMEDY_REPAIR)
+    })
 }
 
 fn expect(words: &Words, word: &[u8], keyword: &str) -> Result<()> {
@@ -136,22 +120,11 @@ fn unexpected(words: &Words, word: &[u8], wanted: &str) -> Diagnostic {
         "found"
     };
     let problem = format!("{found} '{}' where an ASCII STL has {wanted}", shown(word));
-    Diagnostic::input(
-        format!("line {}", words.line),
-        problem,
-        "repair or export the shape again",
-    )
+    Diagnostic::input(format!("line {}", words.line), problem, REMEDY_REPAIR)
 }
 
 fn is(word: &[u8], keyword: &str) -> bool {
     word.eq_ignore_ascii_case(keyword.as_bytes())
-}
-
-/// A word for a message: cut short, control characters escaped.
-fn shown(word: &[u8]) -> String {
-    String::from_utf8_lossy(&word[..word.len().min(30)])
-        .escape_debug()
-        .collect()
 }
 
 /// The words of a text and the line (from 1) of the last one.
@@ -263,12 +236,12 @@ impl<'a> Words<'a> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-    use crate::stl::read_facets;
+    use crate::triangles::read_facets;
 
     const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
 
     fn problem(text: &str) -> String {
-        read_facets(text.as_bytes())
+        read_facets(text.as_bytes(), "")
             .expect_err("refused")
             .to_string()
     }
@@ -278,14 +251,14 @@ mod tests {
         let text = format!(
             "solid a facet\n{FACET}{FACET}endsolid a\n\nsolid\n{FACET}endsolid\nsolid empty\nendsolid empty\n"
         );
-        let facets = read_facets(text.as_bytes()).unwrap();
+        let facets = read_facets(text.as_bytes(), "").unwrap();
         assert_eq!(facets.corners.len(), 3);
         assert!(facets.warnings.is_empty());
     }
 
     #[test]
     fn case_white_space_and_bad_normals_do_not_matter() {
-        let plain = read_facets(format!("solid a\n{FACET}endsolid a\n").as_bytes()).unwrap();
+        let plain = read_facets(format!("solid a\n{FACET}endsolid a\n").as_bytes(), "").unwrap();
         let shouted = format!(
             "SOLID A\r\n{}ENDSOLID A\r\n",
             FACET.to_uppercase().replace('\n', "\r\n\t")
@@ -311,10 +284,10 @@ mod tests {
             .replace("facet normal 0 0 1\n", "")
             .replace("endfacet\n", "");
         for text in [parted, fortran, one_line, commented, bare] {
-            assert_eq!(read_facets(text.as_bytes()).unwrap(), plain, "{text}");
+            assert_eq!(read_facets(text.as_bytes(), "").unwrap(), plain, "{text}");
         }
         let two_in_a_line = format!("solid a solid\n{FACET}endsolid a solid b\n{FACET}endsolid");
-        let two_in_a_line = read_facets(two_in_a_line.replace('\n', " ").as_bytes()).unwrap();
+        let two_in_a_line = read_facets(two_in_a_line.replace('\n', " ").as_bytes(), "").unwrap();
         assert_eq!(two_in_a_line.corners.len(), 2);
         for big in [false, true] {
             let units = format!("\u{feff}solid a\n{FACET}endsolid a\n");
@@ -327,12 +300,12 @@ mod tests {
                     }
                 })
                 .collect();
-            assert_eq!(read_facets(&bytes).unwrap(), plain);
-            assert_eq!(read_facets(&bytes[2..]).unwrap(), plain);
+            assert_eq!(read_facets(&bytes, "").unwrap(), plain);
+            assert_eq!(read_facets(&bytes[2..], "").unwrap(), plain);
         }
         let old_mac = format!("solid a\n{FACET}endsolid a\n").replace('\n', "\r");
         for text in [shouted, marked, old_mac, without_normal, nan_normal] {
-            assert_eq!(read_facets(text.as_bytes()).unwrap(), plain, "{text}");
+            assert_eq!(read_facets(text.as_bytes(), "").unwrap(), plain, "{text}");
         }
     }
 
@@ -376,7 +349,7 @@ mod tests {
     #[test]
     fn a_file_that_ends_within_a_facet_is_refused_and_one_without_endsolid_is_not() {
         let whole = format!("solid a\n{FACET}{FACET}");
-        let facets = read_facets(whole.as_bytes()).unwrap();
+        let facets = read_facets(whole.as_bytes(), "").unwrap();
         assert_eq!((facets.corners.len(), facets.warnings.len()), (2, 1));
         for cut in 9..FACET.len() - 1 {
             let text = &whole[..whole.len() - cut];

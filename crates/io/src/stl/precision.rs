@@ -1,23 +1,22 @@
 //! What single precision does to corners.
 
 use crate::bounds::Bounds;
+use crate::units::significant;
 
 /// Part of the size by which single precision may move corners without a word.
-pub(super) const MOST_MOVED: f64 = 1e-4;
+const MOST_MOVED: f64 = 1e-4;
 
 /// Rounding of corners to single precision, in the unit of the corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Moved {
+struct Moved {
     /// Half the distance of two neighbouring numbers, where coordinates are largest.
-    pub(super) by: f64,
+    by: f64,
     /// The same as a part of the longest extent of the corners.
-    pub(super) share_of_size: f64,
+    share_of_size: f64,
 }
 
 /// How far the numbers of single precision lie apart at these corners.
-pub(super) fn moved_by_single_precision<'a>(
-    corners: impl Iterator<Item = &'a [f64; 3]> + Clone,
-) -> Moved {
+fn moved_by_single_precision<'a>(corners: impl Iterator<Item = &'a [f64; 3]> + Clone) -> Moved {
     let largest = corners
         .clone()
         .flatten()
@@ -38,4 +37,17 @@ pub(super) fn moved_by_single_precision<'a>(
 /// volume.
 pub fn single_precision_keeps<'a>(corners: impl Iterator<Item = &'a [f64; 3]> + Clone) -> bool {
     moved_by_single_precision(corners).share_of_size <= MOST_MOVED
+}
+
+/// A note if the single precision of a binary file of this format moves corners by a part of the
+/// size that shows in the volume.
+pub(crate) fn precision_note(corners: &[[[f64; 3]; 3]], format: &str) -> Option<String> {
+    let moved = moved_by_single_precision(corners.iter().flatten());
+    (moved.share_of_size > MOST_MOVED).then(|| {
+        format!(
+            "The numbers of a binary {format} have seven digits: this far from the origin its corners may be off by {} units of the file, {} % of its size. Export it near the origin, or as text.",
+            significant(moved.by, 2),
+            significant(100.0 * moved.share_of_size, 2)
+        )
+    })
 }

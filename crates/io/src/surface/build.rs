@@ -13,16 +13,17 @@ use super::warnings::{Remarks, sentences};
 use super::{duplicates, holes, t_junctions, weld};
 use crate::bounds::Bounds;
 use crate::boxes::Tree;
-use crate::diagnostic::{Diagnostic, Result};
+use crate::diagnostic::Result;
 use crate::hash::fnv1a;
-use crate::stl::read_facets;
+use crate::triangles::{self, read_facets};
 use std::ops::Range;
 
-/// How the numbers of an STL file are to be read.
+/// How the numbers of a file of triangles are to be read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReadSettings {
-    /// Metres in one unit of the file (STL has no unit of its own).
-    pub unit_m: f64,
+    /// Metres in one unit of the file. None: that of the file, if it has one (3MF), or else a
+    /// millimetre.
+    pub unit_m: Option<f64>,
     /// A further factor on all lengths.
     pub scale: f64,
     /// Close small holes instead of refusing them.
@@ -32,7 +33,11 @@ pub struct ReadSettings {
 /// A closed part whose volume is less than this share of its area (local units) encloses nothing.
 const FLAT: f64 = 1e-10;
 
-/// Reads the STL in `bytes` and makes a solid of it. `source` names it in messages.
+/// Metres in a unit of a file that has none, if none is given.
+const USUAL_UNIT_M: f64 = 1e-3;
+
+/// Reads the STL, OBJ, PLY or 3MF in `bytes` and makes a solid of it. `source` names it: in
+/// messages, and where the contents do not say which it is.
 ///
 /// The result does not depend on the order of the facets, on the corner that each begins with, or
 /// on which way round they are wound. Corners within 3e-5 of the bounding box's diagonal are welded
@@ -41,11 +46,11 @@ const FLAT: f64 = 1e-10;
 /// just one facet.
 ///
 /// # Errors
-/// No whole STL (see `read_facets`); a surface that is not closed, has edges with an odd number of
+/// No whole file of triangles (see `read_facets`), or one that has another unit than the given; a
+/// surface that is not closed, has edges with an odd number of
 /// facets, has no two sides, or encloses nothing.
-pub fn surface_from_stl(bytes: &[u8], source: &str, settings: ReadSettings) -> Result<Surface> {
-    let unit_m = settings.unit_m * settings.scale;
-    build(bytes, unit_m, settings.fill_holes)
+pub fn read_surface(bytes: &[u8], source: &str, settings: ReadSettings) -> Result<Surface> {
+    build(bytes, source, settings)
         .map(|surface| Surface {
             source: source.to_owned(),
             ..surface
@@ -54,15 +59,10 @@ pub fn surface_from_stl(bytes: &[u8], source: &str, settings: ReadSettings) -> R
 }
 
 /// All steps, in order.
-fn build(bytes: &[u8], unit_m: f64, fill_holes: bool) -> Result<Surface> {
-    if !(unit_m > 0.0 && unit_m.is_finite()) {
-        return Err(Diagnostic::input(
-            "",
-            format!("a unit of the file is {unit_m} m"),
-            "give a positive --unit and --scale",
-        ));
-    }
-    let file = read_facets(bytes)?;
+fn build(bytes: &[u8], source: &str, settings: ReadSettings) -> Result<Surface> {
+    let file = read_facets(bytes, source)?;
+    let unit_m = triangles::unit_m(&file, settings.unit_m, settings.scale)?;
+    let unit_m = unit_m.unwrap_or(USUAL_UNIT_M * settings.scale);
     let mut repairs = Repairs {
         facets_read: file.corners.len(),
         ..Repairs::default()
@@ -77,7 +77,13 @@ fn build(bytes: &[u8], unit_m: f64, fill_holes: bool) -> Result<Surface> {
     drop_superfluous(&mut mesh, &mut repairs);
     weld_and_split(&mut mesh, diagonal, frame.size * unit_m, &mut repairs);
     remarks.triangles = mesh.triangles.len();
-    close_holes(&mut mesh, fill_holes, &frame, diagonal, &mut repairs)?;
+    close_holes(
+        &mut mesh,
+        settings.fill_holes,
+        &frame,
+        diagonal,
+        &mut repairs,
+    )?;
 
     let mut parts = wind_outwards(&mut mesh, &frame, &mut remarks)?;
     frame.fit(&mut mesh);

@@ -10,7 +10,7 @@ use super::{t_junctions, weld};
 use crate::bounds::Bounds;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::hash::fnv1a;
-use crate::stl::read_facets;
+use crate::triangles::{self, read_facets};
 
 /// A triangle lower than this share of the diagonal has no area.
 const NO_HEIGHT: f64 = 1e-12;
@@ -48,16 +48,22 @@ pub struct OpenSurface {
     pub warnings: Vec<String>,
 }
 
-/// Reads the STL in `bytes`, whose unit is `unit_m` metres, as a surface that may be open. `source`
-/// names it in messages.
+/// Reads the STL, OBJ, PLY or 3MF in `bytes` as a surface that may be open. `unit_m` is a unit of
+/// the file, m, of which a 3MF needs none, `scale` a factor on all lengths. `source` names the file:
+/// in messages, and where the contents do not say which it is.
 ///
 /// Equal corners become one, and near ones where that closes a gap.
 ///
 /// # Errors
-/// A unit that is no positive number, no whole STL (see `read_facets`), an implausible size, or
-/// facets of which none has an area.
-pub fn read_open_surface(bytes: &[u8], source: &str, unit_m: f64) -> Result<OpenSurface> {
-    read(bytes, unit_m)
+/// No unit, one that is no positive number or not that of the file, no whole file of triangles (see
+/// `read_facets`), an implausible size, or facets of which none has an area.
+pub fn read_open_surface(
+    bytes: &[u8],
+    source: &str,
+    unit_m: Option<f64>,
+    scale: f64,
+) -> Result<OpenSurface> {
+    read(bytes, source, unit_m, scale)
         .map(|surface| OpenSurface {
             source: source.to_owned(),
             ..surface
@@ -65,15 +71,16 @@ pub fn read_open_surface(bytes: &[u8], source: &str, unit_m: f64) -> Result<Open
         .map_err(|error| error.within(source))
 }
 
-fn read(bytes: &[u8], unit_m: f64) -> Result<OpenSurface> {
-    if !(unit_m > 0.0 && unit_m.is_finite()) {
+fn read(bytes: &[u8], source: &str, unit_m: Option<f64>, scale: f64) -> Result<OpenSurface> {
+    let file = read_facets(bytes, source)?;
+    let Some(unit_m) = triangles::unit_m(&file, unit_m, scale)? else {
+        let problem = "the file has no unit of its own";
         return Err(Diagnostic::input(
             "",
-            format!("a unit of the file is {unit_m} m"),
-            "give a positive unit",
+            problem,
+            "add unit = \"mm\" beside its name",
         ));
-    }
-    let file = read_facets(bytes)?;
+    };
     let facets_read = file.corners.len();
     let frame = Frame::around(&file.corners, unit_m)?;
     let mut mesh = weld::equal_corners(&frame.to_local(file.corners));

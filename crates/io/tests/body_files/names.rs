@@ -8,7 +8,7 @@ use super::bodies::{triangle, with_derived_bonds};
 
 #[test]
 fn an_unknown_ending_lists_the_known_ones() {
-    for name in ["cake.ply", "cake", "cake.", ".vtp", "folder.vtp/cake"] {
+    for name in ["cake.xyz", "cake", "cake.", ".vtp", "folder.vtp/cake"] {
         for error in [
             read_body(Path::new(name)).unwrap_err(),
             write_body(&triangle(), Path::new(name)).unwrap_err(),

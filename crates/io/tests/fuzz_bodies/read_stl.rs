@@ -1,17 +1,17 @@
-//! Conditions that hold for any bytes given to the STL reader. Shared by the fuzz target and the
+//! Conditions that hold for any bytes given to the reader of files of triangles. Shared by the fuzz target and the
 //! bounded run of the ordinary tests.
 
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 
-/// Reads `bytes` as an STL, with and without filling holes: the result is an error, or a surface
+/// Reads `bytes` as a file of triangles, with and without filling holes: the result is an error, or a surface
 /// that is closed and finite.
 pub(crate) fn read_stl(bytes: &[u8]) {
     for fill_holes in [false, true] {
-        match surface_from_stl(
+        match read_surface(
             bytes,
             "fuzz.stl",
             ReadSettings {
-                unit_m: 1e-3,
+                unit_m: None,
                 scale: 1.0,
                 fill_holes,
             },

@@ -186,7 +186,7 @@ fn units_and_scale_multiply() {
     let scaled = read(
         &bytes,
         ReadSettings {
-            unit_m: 1e-3,
+            unit_m: Some(1e-3),
             scale: 2.0,
             fill_holes: false,
         },
@@ -206,7 +206,7 @@ fn units_and_scale_multiply() {
         refusal(
             &bytes,
             ReadSettings {
-                unit_m,
+                unit_m: Some(unit_m),
                 scale,
                 fill_holes: false,
             },

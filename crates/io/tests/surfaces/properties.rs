@@ -4,7 +4,7 @@ use super::body::{self, assert_solid};
 use super::gaps::block_with_t_junction;
 use super::solids::{self, Facet, ascii, binary, block, moved, turned};
 use super::{METRES, assert_same_solid, read, shape_bytes};
-use dem_io::surface::surface_from_stl;
+use dem_io::surface::read_surface;
 use proptest::prelude::*;
 
 proptest! {
@@ -47,7 +47,7 @@ proptest! {
             union += u32::from(boxes.iter().any(|(min, max)| (0..3).all(|k| min[k] <= cell[k] && cell[k] < max[k])));
         }
         // Faces that cannot be distinguished may be refused, but a solid must be the union.
-        match surface_from_stl(&binary(&facets), "boxes.stl", METRES) {
+        match read_surface(&binary(&facets), "boxes.stl", METRES) {
             Ok(surface) => {
                 assert_solid(&surface);
                 let error = (surface.volume_m3() - f64::from(union)).abs();

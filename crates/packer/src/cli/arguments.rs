@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// Largest value for `--densify`: the largest that is chosen automatically.
 const LARGEST_DENSIFY: f64 = SHRINK_RANGE[1];
 
-/// Fills the shape of an STL file with overlapping spheres and joins them by bonds.
+/// Fills the shape of an STL, OBJ, PLY or 3MF file with overlapping spheres and joins them by bonds.
 #[derive(Debug, Parser)]
 #[command(
     name = "dem-pack",
@@ -40,9 +40,10 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Describe an STL file or a body
+    /// Describe a shape or a body
     Info {
-        /// An STL file, a body (.vtp, .data, .csv, .txt), or - for a .vtp on standard input
+        /// A shape (.stl, .obj, .ply, .3mf), a body (.vtp, .data, .csv, .txt), or - for a .vtp on
+        /// standard input
         file: PathBuf,
         #[command(flatten)]
         reading: Reading,
@@ -113,9 +114,10 @@ impl BondCommand {
 
 #[derive(Debug, Args)]
 pub(super) struct Reading {
-    /// Unit of the numbers in the STL file: nm, um, mm, cm, m, km, in
-    #[arg(long, default_value = "mm", help_heading = "Shape")]
-    pub(super) unit: String,
+    /// Unit of the numbers in the file: nm, um, mm, cm, m, km, in; mm if not given. A 3MF has its
+    /// own, which a unit given here must be
+    #[arg(long, help_heading = "Shape")]
+    pub(super) unit: Option<String>,
     /// Factor on all lengths of the shape
     #[arg(
         long,
@@ -137,9 +139,9 @@ pub(super) enum BasisArgument {
 
 #[derive(Debug, Args)]
 pub(super) struct PackArguments {
-    /// The shape: an STL file, or - for standard input
-    #[arg(value_name = "STL", required = true)]
-    pub(super) stl: Option<PathBuf>,
+    /// The shape: an STL, OBJ, PLY or 3MF file, or - for standard input
+    #[arg(value_name = "SHAPE", required = true)]
+    pub(super) shape: Option<PathBuf>,
     /// The body to write: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,

@@ -41,17 +41,19 @@ impl Recipe {
         }
         let mut parsed = parsed(&line).map_err(refused)?;
         if let Some(other) = other {
-            parsed.pack.stl = Some(other.to_owned());
+            parsed.pack.shape = Some(other.to_owned());
         }
         let arguments = parsed.pack;
         let no_output = arguments.output.is_none() && arguments.threads.is_none();
-        let (None, true, Some(shape)) = (&parsed.command, no_output, arguments.stl.clone()) else {
+        let (None, true, Some(shape)) = (&parsed.command, no_output, arguments.shape.clone())
+        else {
             let problem = "these are not the arguments of a shape that is packed";
-            let remedy = "write the STL file and its options, without --output and --threads";
+            let remedy =
+                "write the file of the shape and its options, without --output and --threads";
             return Err(Diagnostic::input("dem-pack", problem, remedy));
         };
         if shape.as_os_str() == "-" {
-            let remedy = "name the STL file";
+            let remedy = "name the file of the shape";
             return Err(Diagnostic::input(
                 "dem-pack",
                 "standard input is read once",
@@ -98,7 +100,7 @@ impl Recipe {
         self.settings.packing.seed
     }
 
-    /// The STL file, and that of a sieve curve.
+    /// The file of the shape, and that of a sieve curve.
     pub fn files(&self) -> Vec<PathBuf> {
         let sieve = Sizes::file(self.diameter()).map(PathBuf::from);
         std::iter::once(self.shape.clone()).chain(sieve).collect()

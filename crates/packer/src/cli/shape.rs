@@ -1,9 +1,9 @@
-//! The shape: an STL file or standard input.
+//! The shape: a file of triangles or standard input.
 
 use super::arguments::Reading;
 use crate::sizes::Sizes;
-use dem_io::stl::{read_stl_file, read_stream};
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{self, ReadSettings};
+use dem_io::triangles::{read_stream, read_triangle_file};
 use dem_io::units::{length_unit_m, show_length};
 use dem_io::{Diagnostic, Result, Surface, explain_read};
 use std::path::Path;
@@ -17,14 +17,16 @@ pub(super) fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
             "1 leaves the shape as it is",
         ));
     }
-    let unit_m = length_unit_m(&reading.unit).map_err(|e| e.within("--unit"))?;
+    let unit = reading.unit.as_deref();
+    let unit_m = unit.map(length_unit_m).transpose();
+    let unit_m = unit_m.map_err(|e| e.within("--unit"))?;
     let (name, bytes) = if path == Path::new("-") {
         read_stream(&mut std::io::stdin().lock()).map(|bytes| ("standard input".to_owned(), bytes))
     } else {
-        read_stl_file(path).map(|bytes| (path.display().to_string(), bytes))
+        read_triangle_file(path).map(|bytes| (path.display().to_string(), bytes))
     }
     .map_err(|error| explain_read(path, &error, "a file"))?;
-    surface_from_stl(
+    surface::read_surface(
         &bytes,
         &name,
         ReadSettings {

@@ -3,7 +3,7 @@
 use super::exact::{cross, distance_to_triangle, dot, length, scaled, sub};
 use super::facets::{Facets, Point, cuboid, prism, rounded, stl};
 use dem_io::Surface;
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 use dem_pack::internals::Boundary;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -27,11 +27,11 @@ pub(crate) fn point_between(random: &mut ChaCha8Rng, low: Point, high: Point) ->
 /// The packer's input for facets in mm.
 pub(crate) fn surface_of(facets: &Facets) -> (Surface, Boundary) {
     let settings = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: Some(1e-3),
         scale: 1.0,
         fill_holes: false,
     };
-    let surface = surface_from_stl(&stl(facets), "test", settings).unwrap();
+    let surface = read_surface(&stl(facets), "test", settings).unwrap();
     let boundary = Boundary::new(&surface).unwrap();
     (surface, boundary)
 }

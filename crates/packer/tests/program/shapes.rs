@@ -1,6 +1,6 @@
 //! Every difficult shape that can be packed: the right solid, filled, exact.
 
-use super::{Bench, Made, bits, read_stl, shape};
+use super::{Bench, Made, bits, read_stl, refusal, root, shape};
 use crate::helpers::exact::{assert_exact, length, sub};
 use std::f64::consts::PI;
 
@@ -89,6 +89,92 @@ fn one_box_in_four_files_is_one_packing() {
         "inverted: another packing than of the binary box"
     );
     assert_eq!(inverted.count("/repairs/flipped_facets"), 12);
+}
+
+/// The corners of each facet as an OBJ and as a PLY, each corner as often as facets have it.
+fn obj_and_ply(facets: &[[[f64; 3]; 3]]) -> [String; 2] {
+    let corners = facets.as_flattened();
+    let lines = |before: &str| -> String {
+        let line = |[x, y, z]: &[f64; 3]| format!("{before}{x} {y} {z}\n");
+        corners.iter().map(line).collect()
+    };
+    let faces = |before: &str, first: usize| -> String {
+        let face = |at: usize| {
+            let [a, b, c] = [0, 1, 2].map(|k| 3 * at + k + first);
+            format!("{before}{a} {b} {c}\n")
+        };
+        (0..facets.len()).map(face).collect()
+    };
+    let head = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        corners.len(),
+        facets.len()
+    );
+    [
+        lines("v ") + &faces("f ", 1),
+        head + &lines("") + &faces("3 ", 0),
+    ]
+}
+
+#[test]
+fn one_shape_in_four_formats_is_one_packing() {
+    for (name, diameter) in [("02", "1.5mm..2mm"), ("22", "3mm..4mm")] {
+        let file = shape(name);
+        let bench = Bench::new();
+        let wanted = bench.pack_only(&file, &["--diameter", diameter]);
+        let [obj, ply] = obj_and_ply(&read_stl(&file));
+        for (name, text) in [("part.obj", obj), ("part.ply", ply)] {
+            let file = bench.path(name);
+            std::fs::write(&file, text).unwrap();
+            let made = bench.pack_only(&file, &["--diameter", diameter]);
+            assert!(bits(&made) == bits(&wanted), "{name}");
+            assert_eq!(made.bonds, wanted.bonds);
+        }
+    }
+    let file = root().join("crates/packer/tests/shapes/box.3mf");
+    let options = ["--diameter", "1.5mm..2mm"];
+    let wanted = Bench::new().pack_only(&shape("02"), &options);
+    for unit in [&[][..], &["--unit", "mm"]] {
+        let made = Bench::new().pack_only(&file, &[&options[..], unit].concat());
+        assert!(bits(&made) == bits(&wanted), "{unit:?}");
+    }
+    let other = Bench::new().run(
+        &file,
+        &[&options[..], &["--unit", "cm", "-o", "a.vtp"]].concat(),
+    );
+    let said = refusal(&other, &file);
+    let wanted = "a unit of the file is 0.001 m, as it says itself, not 0.01 m; leave the unit out; a scale makes the shape larger or smaller";
+    assert!(said.ends_with(wanted), "{said}");
+}
+
+#[test]
+fn info_describes_a_shape_of_any_format() {
+    let bench = Bench::new();
+    let [obj, ply] = obj_and_ply(&read_stl(&shape("02")));
+    std::fs::write(bench.path("part.obj"), obj).unwrap();
+    std::fs::write(bench.path("PART.PLY"), ply).unwrap();
+    let box_3mf = root().join("crates/packer/tests/shapes/box.3mf");
+    let said = |file: &std::path::Path| {
+        let mut info = super::dem_pack();
+        let output = info
+            .arg("info")
+            .arg(file)
+            .args(["--json"])
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", file.display());
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        summary["volume_m3"].as_f64().unwrap()
+    };
+    for file in [
+        shape("02"),
+        bench.path("part.obj"),
+        bench.path("PART.PLY"),
+        box_3mf,
+    ] {
+        let volume_m3 = said(&file);
+        assert!((volume_m3 / 2400e-9 - 1.0).abs() < 1e-12, "{volume_m3}");
+    }
 }
 
 #[test]

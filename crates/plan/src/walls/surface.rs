@@ -1,9 +1,9 @@
-//! Surfaces of STL files: reading, notes and warnings.
+//! Surfaces of files of triangles: reading, notes and warnings.
 
 use std::path::Path;
 
-use dem_io::stl::read_stl_file;
 use dem_io::surface::{OpenSurface, read_open_surface};
+use dem_io::triangles::read_triangle_file;
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Wall as SceneWall, WallShape};
@@ -41,17 +41,17 @@ impl Sizes {
     }
 }
 
-/// The surface from a file that a scene names, in m.
-pub(crate) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
+/// The surface from a file that a scene names, in m, with this unit, m, or its own, and this scale.
+pub(crate) fn surface_of(path: &Path, unit_m: Option<f64>, scale: f64) -> Result<OpenSurface> {
     let file = path.display().to_string();
-    let bytes = read_stl_file(path).map_err(|error| {
+    let bytes = read_triangle_file(path).map_err(|error| {
         Diagnostic::input(
             &file,
             format!("cannot be read: {error}"),
             "check its name: it counts from the scene's folder, or with --set from where you stand",
         )
     })?;
-    read_open_surface(&bytes, &file, unit_m)
+    read_open_surface(&bytes, &file, unit_m, scale)
 }
 
 /// What is unusual in a surface, and its consequences.
@@ -127,9 +127,12 @@ pub(super) fn question_size(
     } else {
         return None;
     };
+    let unit = match unit_m {
+        Some(unit_m) => format!("a unit of its file {}", show_length(*unit_m)),
+        None => "the unit in its file right".to_owned(),
+    };
     Some(format!(
-        "wall '{name}' is {} across, {than}: is a unit of its file {}?",
-        show_length(size_m),
-        show_length(*unit_m),
+        "wall '{name}' is {} across, {than}: is {unit}?",
+        show_length(size_m)
     ))
 }

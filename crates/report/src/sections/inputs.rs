@@ -66,6 +66,9 @@ fn add_bodies(page: &mut Page, summary: &Summary) {
     });
     let walls = summary.inputs.walls.len();
     if walls > 0 {
-        page.small(&format!("{} from STL files.", counted(walls, "wall")));
+        page.small(&format!(
+            "{} from files of triangles.",
+            counted(walls, "wall")
+        ));
     }
 }

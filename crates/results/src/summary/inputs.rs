@@ -19,9 +19,9 @@ pub struct Inputs {
     pub seed: u64,
     /// Bodies by name.
     pub bodies: BTreeMap<String, InputBody>,
-    /// STL files of walls by name of the wall.
+    /// Files of triangles of walls by name of the wall.
     pub walls: BTreeMap<String, InputFile>,
-    /// STL files of regions by name of the region.
+    /// Files of triangles of regions by name of the region.
     pub regions: BTreeMap<String, InputFile>,
     /// Files of materials that the scene includes, in order.
     pub included: Vec<InputFile>,
@@ -31,7 +31,7 @@ pub struct Inputs {
     /// Direction from the bodies to the camera that the scene gives, of length 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_from: Option<[f64; 3]>,
-    /// Walls that are solid and seen from outside only: surfaces from STL files have two sides.
+    /// Walls that are solid and seen from outside only: surfaces from files of triangles have two sides.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub solid_walls: Vec<String>,
     /// Program and version.

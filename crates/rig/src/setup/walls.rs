@@ -10,7 +10,7 @@ pub(super) fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
     pivot + turned * (Vector3::from(point_m) - pivot)
 }
 
-/// The middle of a wall. None: it is not known where the surface of an STL file would meet the
+/// The middle of a wall. None: it is not known where the surface of a file would meet the
 /// body.
 pub(super) fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
     let [from, to] = wall.shape.ends_m()?;

@@ -30,7 +30,8 @@ fn plate() -> Surface {
 
 #[test]
 fn an_open_plate_in_millimetres_is_a_wall() {
-    let surface = read_open_surface(stl(&plate()).as_bytes(), "plate.stl", 1e-3).unwrap();
+    let surface =
+        read_open_surface(stl(&plate()).as_bytes(), "plate.stl", Some(1e-3), 1.0).unwrap();
     let mesh = Mesh::from_surface(&surface).unwrap();
     assert_eq!((mesh.content.triangles, mesh.content.open_edges), (32, 16));
     assert_eq!(
@@ -50,7 +51,7 @@ fn an_open_plate_in_millimetres_is_a_wall() {
 #[test]
 fn a_closed_box_is_read_the_same_way() {
     let surface = box_surface([0.0; 3], [1.0; 3], 2);
-    let read = read_open_surface(stl(&surface).as_bytes(), "box.stl", 1.0).unwrap();
+    let read = read_open_surface(stl(&surface).as_bytes(), "box.stl", Some(1.0), 1.0).unwrap();
     assert_eq!((read.vertices_m.len(), read.triangles.len()), (26, 48));
     let mesh = Mesh::from_surface(&read).unwrap();
     assert_eq!(
@@ -73,7 +74,7 @@ fn gaps_splits_doubles_and_slivers_are_seen_to() {
     let [a, b, c] = near[3];
     let extra = vec![[b, a, c], [a, a, b]];
     text += &stl(&(moved, [near, extra].concat()));
-    let read = read_open_surface(text.as_bytes(), "plate.stl", 1.0).unwrap();
+    let read = read_open_surface(text.as_bytes(), "plate.stl", Some(1.0), 1.0).unwrap();
     assert_eq!((read.facets_read, read.triangles.len()), (34, 32));
     assert_eq!((read.duplicate_facets, read.degenerate_facets), (1, 1));
     assert_eq!((read.welded_vertices, read.vertices_m.len()), (5, 25));
@@ -89,7 +90,7 @@ fn gaps_splits_doubles_and_slivers_are_seen_to() {
         ],
         vec![[0, 1, 2], [0, 3, 4], [4, 3, 1]],
     );
-    let read = read_open_surface(stl(&tee).as_bytes(), "tee.stl", 1.0).unwrap();
+    let read = read_open_surface(stl(&tee).as_bytes(), "tee.stl", Some(1.0), 1.0).unwrap();
     assert_eq!((read.t_junctions, read.triangles.len()), (1, 4));
 }
 
@@ -97,7 +98,7 @@ fn gaps_splits_doubles_and_slivers_are_seen_to() {
 #[test]
 fn turned_facets_are_counted() {
     let read = |surface: &Surface| {
-        let read = read_open_surface(stl(surface).as_bytes(), "wall.stl", 1.0).unwrap();
+        let read = read_open_surface(stl(surface).as_bytes(), "wall.stl", Some(1.0), 1.0).unwrap();
         (read.turned_facets, read.duplicate_facets)
     };
     let turn = |triangles: &mut [[u32; 3]], which: &[usize]| {
@@ -152,7 +153,7 @@ fn what_is_no_surface_is_refused_with_the_name_of_the_file() {
         (stl(&plate()), 0.0),
         (stl(&plate()), f64::NAN),
     ] {
-        let error = read_open_surface(text.as_bytes(), "plate.stl", unit).unwrap_err();
+        let error = read_open_surface(text.as_bytes(), "plate.stl", Some(unit), 1.0).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(
             error.place.starts_with("plate.stl") && !error.remedy.is_empty(),

@@ -186,19 +186,28 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
     Ok(values)
 }
 
-/// The value of `[find]` in the unit of its measure, if the study has that table.
+/// The value of `[find]`, or the limit of `[probability]`, in the unit of its measure, if the study
+/// has such a table.
 pub fn value_to_find(study: &Study, scene: &Scene) -> Result<Option<f64>> {
-    let Some(find) = &study.find else {
-        return Ok(None);
+    let (measure, written, place) = match (&study.find, &study.probability) {
+        (Some(find), _) => (
+            find.measure,
+            &find.value,
+            format!("{}: find.value", find.place),
+        ),
+        (None, Some(of)) => {
+            let key = if of.is_below { "below" } else { "above" };
+            let place = format!("{}: probability.{key}", of.place);
+            (of.measure, &of.limit, place)
+        }
+        (None, None) => return Ok(None),
     };
-    let of_scene = match &study.measures[find.measure].of {
+    let of_scene = match &study.measures[measure].of {
         MeasureOf::Measure(of) => scene.measures.get(of),
         _ => None,
     };
-    let value = in_unit_of(&find.value, of_scene);
-    value
-        .map(Some)
-        .map_err(|error| error.within(&format!("{}: find.value", find.place)))
+    let value = in_unit_of(written, of_scene);
+    value.map(Some).map_err(|error| error.within(&place))
 }
 
 /// A value as written, in the unit of the scene's measure, or in SI for other results.

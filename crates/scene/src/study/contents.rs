@@ -54,6 +54,8 @@ pub struct Study {
     pub packings: PathBuf,
     /// `[design]`
     pub design: Option<Design>,
+    /// `[probability]`, beside neither of these.
+    pub probability: Option<Probability>,
     /// `series` of `[page]`: the axis whose values are distinguished by colour; the first without
     /// sizes unless given.
     pub series: Option<usize>,
@@ -107,6 +109,26 @@ pub struct Find {
     /// For each case, the points tried: indices of values on the first axis, the two ends first and
     /// then in the order of trial. See [`Study::cases`].
     pub tried: Vec<Vec<usize>>,
+    /// Its place in the study.
+    pub place: String,
+}
+
+/// The probability of an outcome over a parameter, once for each case: each combination of the
+/// values of the other axes except the averaged one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probability {
+    /// `of`: the index of the measure among those of the study.
+    pub measure: usize,
+    /// `below` or `above`, as written, with or without a unit.
+    pub limit: String,
+    /// True for `below`: a run has the outcome if the measure is below the limit.
+    pub is_below: bool,
+    /// `over`: the index of the axis, whose values are numbers in one unit, two different ones at
+    /// least.
+    pub over: usize,
+    /// `spacing`: true if the curve is one over the logarithm of the parameter, whose values are
+    /// above 0.
+    pub is_log: bool,
     /// Its place in the study.
     pub place: String,
 }

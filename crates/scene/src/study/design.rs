@@ -15,7 +15,7 @@ use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::units::significant;
 
 /// Keys of a study that mean nothing beside `[design]`.
-const WITHOUT_EFFECT: [&str; 4] = ["find", "combine", "statistic", "page"];
+const WITHOUT_EFFECT: [&str; 5] = ["find", "probability", "combine", "statistic", "page"];
 /// Largest number of trajectories, and of levels.
 const MOST_TRAJECTORIES: u64 = 1000;
 const MOST_LEVELS: u64 = 100;

@@ -89,16 +89,7 @@ pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure], cases: usize)
         let remedy = "points are rounded to six digits: write a larger one";
         return Err(tolerated.wrong(limit.trim_end(), remedy));
     }
-    let named = table.need("measure")?;
-    let name = named.text()?;
-    let measure = measures.iter().position(|measure| measure.name == name);
-    let measure = measure.ok_or_else(|| {
-        let problem = format!("is {}, but the study has no such measure", named.shown());
-        named.fault(
-            problem,
-            suggestion(name, measures.iter().map(|m| m.name.as_str())),
-        )
-    })?;
+    let measure = measure_named(&table.need("measure")?, measures)?;
     let value = table.need("value")?;
     Ok(Find {
         measure,
@@ -113,6 +104,19 @@ pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure], cases: usize)
         unit,
         tried: vec![vec![0, 1]; cases],
         place: table.document.place(table.origin),
+    })
+}
+
+/// The measure of the study that `named` names.
+pub(super) fn measure_named(named: &Field<'_>, measures: &[StudyMeasure]) -> Result<usize> {
+    let name = named.text()?;
+    let measure = measures.iter().position(|measure| measure.name == name);
+    measure.ok_or_else(|| {
+        let problem = format!("is {}, but the study has no such measure", named.shown());
+        named.fault(
+            problem,
+            suggestion(name, measures.iter().map(|m| m.name.as_str())),
+        )
     })
 }
 

@@ -59,6 +59,7 @@ table_schema! {
     /// standard deviation, or their median with the range. `[find]` has its own.
     new("statistic", Kind::Word(|| words_of(&AVERAGES))).or_word("mean");
     documented("find", &FIND);
+    documented("probability", &PROBABILITY);
     documented("design", &DESIGN);
     documented("page", &PAGE);
 }
@@ -95,6 +96,24 @@ table_schema! {
     new("statistic", Kind::Word(|| words_of(&AVERAGES))).or_word("mean");
     /// Largest width of the interval in which the parameter is found, in the same unit.
     new("tolerance", ANYTHING).required("\"2 cm\"");
+}
+
+table_schema! {
+    /// Probability that a measure is below or above a limit, over a parameter: a logistic curve
+    /// through runs with and without this outcome. The runs along the axis of `average_over` show
+    /// chance; what else varies makes cases, each with a curve of its own.
+    pub(super) static PROBABILITY = "[probability]";
+
+    /// The measure, a name in `[measures]`.
+    text("of", "a measure of the study").required("\"largest\"");
+    /// A run has the outcome if the measure is below this value.
+    new("below", ANYTHING);
+    /// A run has the outcome if the measure is above this value.
+    new("above", ANYTHING);
+    /// The parameter, an axis whose values are numbers in one unit.
+    text("over", "an axis").required("\"bodies.tablet.drop.height\"");
+    /// Whether the curve is one over the parameter or over its logarithm.
+    new("spacing", Kind::Word(|| words_of(&SPACINGS))).or_word("linear");
 }
 
 table_schema! {

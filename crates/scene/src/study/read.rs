@@ -10,6 +10,7 @@ use super::find;
 use super::keys::{DESIGN, FIND, MOST_REPEATS, PAGE, SEED, STUDY};
 use super::measures::{axis_named, measure};
 use super::pack;
+use super::probability;
 use super::values::{self, MOST_VALUES, tidy};
 use crate::field::Field;
 use crate::paths::{named_path, text_of};
@@ -52,6 +53,13 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         Some(find) => Some(search(&find, &measures, combine, average_over, &axes)?),
         None => None,
     };
+    let probability = root.read_by("probability", |field| {
+        if find.is_some() {
+            let problem = "[probability] has no effect on a study with [find]";
+            return Err(field.refuse(problem, "let the parameter vary in another study"));
+        }
+        probability::read(&field, combine, average_over, &axes, &measures)
+    })?;
     let page = root.table("page", &PAGE)?;
     let series = page.read_by("series", |field| axis_named(&field, &axes))?;
     let study = Study {
@@ -67,6 +75,7 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         statistic: find::statistic(&root)?,
         find,
         design,
+        probability,
         series: series.or_else(|| axes.iter().position(|axis| axis.sizes().is_none())),
         packs: pack::packs(&root, folder)?,
         packings: PathBuf::new(),

@@ -86,7 +86,7 @@ fn regions() {
         regions["cake"],
         Region::Stl {
             file: folder().join("shapes/bin.stl"),
-            unit_m: 1e-3
+            unit_m: Some(1e-3)
         }
     );
 }

@@ -219,7 +219,7 @@ fn walls() {
         walls["plate"].shape,
         WallShape::Stl {
             path: folder().join("shapes/plate.stl"),
-            unit_m: 1e-3,
+            unit_m: Some(1e-3),
             scale: 0.5
         }
     );

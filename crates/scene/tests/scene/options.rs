@@ -84,6 +84,31 @@ fn options_add_contacts_and_walls() {
     assert_eq!(scene.search.skin, Some(0.2));
 }
 
+/// A 3MF has a unit of its own; other files need one in the scene.
+#[test]
+fn only_a_3mf_needs_no_unit() {
+    let wall = |file: &str| {
+        let file = format!("walls.plate.stl={file}");
+        with(&[
+            &file,
+            "walls.plate.material=clay",
+            "materials.clay.young_modulus=1 MPa",
+        ])
+    };
+    for name in ["plate.3mf", "PLATE.3MF"] {
+        let scene = wall(name).unwrap();
+        let WallShape::Stl { unit_m, .. } = &scene.walls["plate"].shape else {
+            panic!("no surface");
+        };
+        assert_eq!(*unit_m, None);
+        assert!(scene.describe().contains("that of the file"));
+    }
+    for name in ["plate.stl", "plate.obj", "plate.ply"] {
+        let said = wall(name).unwrap_err().to_string();
+        assert!(said.contains("walls.plate.unit is missing"), "{said}");
+    }
+}
+
 #[test]
 fn bad_options_are_refused_by_name() {
     for (text, message) in [

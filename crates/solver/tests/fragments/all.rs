@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use dem_io::body::{read_frame, read_particles, read_walls};
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
 use dem_io::units::significant;
 use dem_results::folder::walls_in;
 use nalgebra::Vector3;
@@ -105,11 +105,11 @@ fn hulls_hold_the_spheres_within_the_stated_share() {
         // It is a closed solid, wound outwards, that dem-pack reads without a repair.
         let bytes = fs::read(&path).unwrap();
         let settings = ReadSettings {
-            unit_m: 1e-3,
+            unit_m: Some(1e-3),
             scale: 1.0,
             fill_holes: false,
         };
-        let surface = surface_from_stl(&bytes, "hull.stl", settings).unwrap();
+        let surface = read_surface(&bytes, "hull.stl", settings).unwrap();
         let volume_m3 = 1e-9 * volume(&facets(&path));
         assert!((surface.volume_m3() / volume_m3 - 1.0).abs() < 1e-3);
         let of_largest = spheres.iter().map(|(_, r)| 4.1 * (1e-3 * r).powi(3));

@@ -6,6 +6,7 @@ mod failed;
 mod lists;
 mod packings;
 mod pieces;
+mod probability;
 mod responses;
 mod safety;
 

@@ -30,7 +30,7 @@ pub(crate) struct CalibrateArguments {
     /// several scenes also friction_angle, and PATH alone
     #[arg(long, value_name = "NUMBER")]
     pub(super) free: Vec<String>,
-    /// With several scenes: STL file of a scene's body, in place of that after --
+    /// With several scenes: file of the shape of a scene's body, in place of that after --
     #[arg(long, value_name = "SCENE=FILE", requires_all = ["pack", "more"])]
     pub(super) shape: Vec<String>,
     /// With several scenes: a further result that a scene has to give, such as

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::Path;
 
-use dem_io::stl::read_stl_file;
-use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::surface::{ReadSettings, read_surface};
+use dem_io::triangles::read_triangle_file;
 use dem_io::units::{Dimension, LENGTH, MASS, quantity, significant};
 use dem_io::{Diagnostic, Result, Surface, explain_read};
 use dem_plan::masses::{HEAVIEST_KG_M3, LIGHTEST_KG_M3};
@@ -77,7 +77,7 @@ fn shape<R: BufRead, W: Write>(
     let own = template.shape();
     let asked = Question {
         option: "--shape",
-        what: "an STL file in mm",
+        what: "an STL, OBJ, PLY or 3MF file; in mm if it has no unit",
         default: own.described(),
     };
     let read = |text: &str| read_shape(Path::new(text), template);
@@ -203,7 +203,7 @@ fn read_mass(text: &str, volume_m3: f64) -> Result<f64> {
 }
 
 fn read_shape(path: &Path, template: Template) -> Result<Surface> {
-    let bytes = read_stl_file(path).map_err(|error| explain_read(path, &error, "an STL file"))?;
+    let bytes = read_triangle_file(path).map_err(|error| explain_read(path, &error, "a file"))?;
     let surface = surface_of(&bytes, &path.display().to_string())?;
     template.check(extent_m(&surface))?;
     Ok(surface)
@@ -211,11 +211,11 @@ fn read_shape(path: &Path, template: Template) -> Result<Surface> {
 
 fn surface_of(bytes: &[u8], name: &str) -> Result<Surface> {
     let settings = ReadSettings {
-        unit_m: 1e-3,
+        unit_m: None,
         scale: 1.0,
         fill_holes: false,
     };
-    surface_from_stl(bytes, name, settings)
+    read_surface(bytes, name, settings)
 }
 
 /// The facets scaled, mm, with the middle of their box at the origin.

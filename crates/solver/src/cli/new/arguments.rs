@@ -15,7 +15,8 @@ pub(crate) struct NewArguments {
     /// The folder to make
     #[arg(value_name = "FOLDER")]
     pub(super) folder: PathBuf,
-    /// Your own body, an STL file in mm; the shape of the template if not given
+    /// Your own body, an STL, OBJ, PLY or 3MF file, in mm if it has no unit; the shape of the
+    /// template if not given
     #[arg(long, value_name = "FILE")]
     pub(super) shape: Option<String>,
     /// Its largest extent, such as "30 mm": scales the shape

@@ -19,6 +19,7 @@ use dem_study::folder::SweepFolder;
 use dem_study::jobs::{Job, arguments, refuse_unlistable, scene_arguments, shell_line};
 use dem_study::page::page;
 use dem_study::plot::plot;
+use dem_study::probability_page::{probability_csv, probability_fit_csv, probability_plots};
 use dem_study::ranking::{DesignTable, Rankings};
 use dem_study::ranking_plot::{change_bars, morris_bars, sigma_plot};
 use dem_study::ranking_text::effects_csv;
@@ -61,7 +62,7 @@ pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolde
     })
 }
 
-/// `sweep.csv`, `responses.csv`, `find.csv`, `effects.csv`, `sweep.json`, `sweep.html` and the
+/// `sweep.csv`, `responses.csv`, `find.csv`, `probability.csv`, `effects.csv`, `sweep.json`, `sweep.html` and the
 /// plots of each measure.
 pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
     let file = |name: &str| folder.path().join(name);
@@ -80,6 +81,18 @@ pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()
         for (number, plot) in (1..).zip(found_plots(table, search)) {
             // A measure may have the name `find`, but not one with a dot.
             let path = file(&format!("find.{number}.svg"));
+            write_plot_file(&path, &plot.svg().file())?;
+        }
+    }
+    if let Some(of) = &table.probability {
+        write_file(&file("probability.csv"), |out| {
+            out.write_all(probability_csv(table, of).as_bytes())
+        })?;
+        write_file(&file("probability-fit.csv"), |out| {
+            out.write_all(probability_fit_csv(table, of).as_bytes())
+        })?;
+        for (number, plot) in (1..).zip(probability_plots(table, of)) {
+            let path = file(&format!("probability.{number}.svg"));
             write_plot_file(&path, &plot.svg().file())?;
         }
     }
