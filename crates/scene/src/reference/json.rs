@@ -161,6 +161,7 @@ fn spellings(unit: &str) -> String {
             'u' => "[uµμ]".to_owned(),
             '2' => "[2²]".to_owned(),
             '3' => "[3³]".to_owned(),
+            '(' | ')' => format!(r"\{letter}"),
             other => other.to_string(),
         })
         .collect();

@@ -13,7 +13,7 @@ use dem_scene::{
     BodySource, BondDamping, BondFailure, BondPlasticity, BoxShape, Clusters, ColourBy, Contact,
     ContactLaw, CylinderShape, Factor, Formulation, Hold, InitialOverlap, Integrator, Pick,
     PlaneShape, QUANTITIES, Relaxation, Scene, Search, SphereShape, Statistic, StrainRateMeasure,
-    Wall, WallMotion, WallShape,
+    Wall, WallLoads, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -192,7 +192,10 @@ fn walls() {
             pivot_m: [0.0; 3],
             motion: WallMotion::Fixed,
             surface_velocity_m_s: [0.0; 3],
-            loads: None,
+            loads: Some(WallLoads {
+                patch_m: Some(0.01),
+                wear_constant_1_pa: 1e-13
+            }),
         }
     );
     let belt = &walls["belt"];
