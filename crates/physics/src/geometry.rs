@@ -11,6 +11,7 @@
 pub mod balls;
 pub mod cylinder;
 pub mod frame;
+pub mod grids;
 pub mod mesh;
 pub mod one_surface;
 pub mod patches;

@@ -2,6 +2,5 @@
 
 pub(crate) mod buffers;
 pub mod clusters;
-pub(crate) mod grids;
 pub mod references;
 pub mod rigid_balls;

@@ -78,7 +78,16 @@ impl Summary {
             out,
             "bodies       {} fed ({fed} kg){discharged}{fines}",
             bodies.fed
-        )
+        )?;
+        if bodies.outlets.len() < 2 {
+            return Ok(());
+        }
+        let outlets = bodies.outlets.iter().take(SHOWN).map(|(name, outlet)| {
+            let mass = significant(outlet.mass_kg, 4);
+            format!("{} {mass} kg in {}", visible(name), outlet.bodies)
+        });
+        let outlets: Vec<String> = outlets.collect();
+        writeln!(out, "outlets      {}", outlets.join(", "))
     }
 
     /// The verdict with its reasons, and the page of the run.

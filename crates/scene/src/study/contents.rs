@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::pack::Pack;
 use crate::schema::Word;
 
 /// Version of the study format.
@@ -86,6 +85,36 @@ impl Study {
         self.fixed
             .iter()
             .chain(firsts.flat_map(|value| &value.settings))
+    }
+}
+
+/// A body that is packed anew for each combination of its options.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pack {
+    /// Name of the body in the scene.
+    pub body: String,
+    /// `shape`, resolved against the folder of the study.
+    pub shape: PathBuf,
+    /// `options` of `dem-pack`, word by word.
+    pub options: Vec<String>,
+    /// Its place in the study.
+    pub place: String,
+}
+
+impl Pack {
+    /// The arguments of `dem-pack` with the options among these settings.
+    pub fn arguments(&self, settings: &[&Setting]) -> Vec<String> {
+        let mut words = vec![self.shape.display().to_string()];
+        words.extend(self.options.iter().cloned());
+        let own = format!("{PACK}{}.", self.body);
+        let options = settings.iter().filter_map(|setting| {
+            let option = setting.path.strip_prefix(&own)?;
+            // Of "8 mm", as a range of a study writes it, 8mm.
+            let value = setting.value.replace(['"', ' '], "");
+            Some(format!("--{option}={value}"))
+        });
+        words.extend(options);
+        words
     }
 }
 

@@ -1,43 +1,13 @@
 //! `[pack.NAME]`: bodies that a study packs itself, with options of `dem-pack` that may vary.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::contents::{BODY, PACK, Setting, Study};
+use super::contents::{BODY, PACK, Pack, Study};
 use super::keys::PACKED;
 use super::values::tidy;
 use crate::names::suggestion;
 use crate::table::Table;
 use dem_io::diagnostic::{Diagnostic, Result};
-
-/// A body that is packed anew for each combination of its options.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pack {
-    /// Name of the body in the scene.
-    pub body: String,
-    /// `shape`, resolved against the folder of the study.
-    pub shape: PathBuf,
-    /// `options` of `dem-pack`, word by word.
-    pub options: Vec<String>,
-    /// Its place in the study.
-    pub place: String,
-}
-
-impl Pack {
-    /// The arguments of `dem-pack` with the options among these settings.
-    pub fn arguments(&self, settings: &[&Setting]) -> Vec<String> {
-        let mut words = vec![self.shape.display().to_string()];
-        words.extend(self.options.iter().cloned());
-        let own = format!("{PACK}{}.", self.body);
-        let options = settings.iter().filter_map(|setting| {
-            let option = setting.path.strip_prefix(&own)?;
-            // Of "8 mm", as a range of a study writes it, 8mm.
-            let value = setting.value.replace(['"', ' '], "");
-            Some(format!("--{option}={value}"))
-        });
-        words.extend(options);
-        words
-    }
-}
 
 /// The bodies that are packed.
 pub(super) fn packs(root: &Table<'_>, folder: &Path) -> Result<Vec<Pack>> {

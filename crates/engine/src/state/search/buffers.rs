@@ -1,9 +1,9 @@
 //! Vectors of the neighbour search, kept from one search to the next for their memory only.
 
 use super::clusters::KnownClusters;
-use super::grids::Grids;
 use dem_physics::geometry::Bounds;
 use dem_physics::geometry::balls::{Ball, BoxColumns};
+use dem_physics::geometry::grids::Grids;
 
 /// What is to be searched for.
 #[derive(Debug, Clone, Default)]

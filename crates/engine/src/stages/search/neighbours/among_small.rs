@@ -1,8 +1,8 @@
 //! Pairs of small clusters, and of these with large ones, by grids.
 
 use crate::state::search::clusters::{KnownClusters, Searched};
-use crate::state::search::grids::{Grid, Grids};
 use dem_physics::geometry::balls::Ball;
+use dem_physics::geometry::grids::{Grid, Grids};
 use dem_physics::lanes::{LaneWork, Lanes, next_of};
 use dem_physics::number::Vec3;
 

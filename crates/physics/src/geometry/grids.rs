@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use dem_physics::geometry::Bounds;
-use dem_physics::geometry::balls::{BOXES, Ball, NOWHERE};
+use crate::geometry::Bounds;
+use crate::geometry::balls::{BOXES, Ball, NOWHERE};
 
 /// Balls of a level are at least half as large as the largest of it, except those of the last.
 const MOST_LEVELS: usize = 16;
@@ -14,7 +14,7 @@ const CELLS_PER_BALL: usize = 4;
 /// Grids of all levels, the largest balls first. They are filled again for each search, and keep
 /// their memory.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Grids {
+pub struct Grids {
     /// On the heap: contacts, which hold them, are often moved.
     levels: Vec<Grid>,
     largest_m: f64,
@@ -22,7 +22,7 @@ pub(crate) struct Grids {
 
 /// Grid of cells as wide as the largest ball of its level, and the balls in each.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Grid {
+pub struct Grid {
     /// Places of its balls among those given.
     members: Vec<u32>,
     cells: Vec<u32>,
@@ -34,16 +34,16 @@ pub(crate) struct Grid {
     /// For each cell, the first of its balls in `particles`, followed by the total number.
     starts: Vec<u32>,
     /// Numbers of the balls, sorted by cell.
-    pub(crate) particles: Vec<u32>,
+    pub particles: Vec<u32>,
     /// The same balls by columns, x, y, z and radius, m, followed by [`BOXES`] times [`NOWHERE`]:
     /// as many balls can be read from any place.
-    pub(crate) columns: [Vec<f64>; 4],
+    pub columns: [Vec<f64>; 4],
 }
 
 impl Grids {
     /// Holds these balls, given with their numbers, in place of those before. Their radii are
     /// above 0.
-    pub(crate) fn fill(&mut self, active: &[(u32, Ball)]) {
+    pub fn fill(&mut self, active: &[(u32, Ball)]) {
         self.levels.resize_with(MOST_LEVELS, Grid::default);
         self.largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
         for level in self.levels.iter_mut() {
@@ -59,7 +59,7 @@ impl Grids {
     }
 
     /// Size of the vectors, bytes.
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         let of_level = |level: &Grid| {
             let numbers = [
                 &level.members,
@@ -75,12 +75,14 @@ impl Grids {
     }
 
     /// The grids, of the largest balls first.
-    pub(crate) fn levels(&self) -> &[Grid] {
+    #[inline]
+    pub fn levels(&self) -> &[Grid] {
         &self.levels[..]
     }
 
     /// The number of the grid that holds balls of this radius, m.
-    pub(crate) fn level_of(&self, radius_m: f64) -> usize {
+    #[inline]
+    pub fn level_of(&self, radius_m: f64) -> usize {
         // The exponent of a floating-point number is the integer part of its binary logarithm.
         let octaves = ((self.largest_m / radius_m).to_bits() >> 52).saturating_sub(1023);
         (octaves as usize).min(MOST_LEVELS - 1)
@@ -149,6 +151,7 @@ impl Grid {
         self.counts = counts_of(width);
     }
 
+    #[inline]
     fn cell(&self, ball: Ball) -> [usize; 3] {
         [0, 1, 2].map(|k| {
             let along = (ball[k] - self.origin[k]) * self.per_width;
@@ -156,6 +159,7 @@ impl Grid {
         })
     }
 
+    #[inline]
     fn number(&self, [x, y, z]: [usize; 3]) -> usize {
         (z * self.counts[1] + y) * self.counts[0] + x
     }
@@ -163,7 +167,7 @@ impl Grid {
     /// The balls in the cells where a ball may overlap some: places in `particles`, one range for
     /// each row of cells.
     #[inline(always)]
-    pub(crate) fn rows_near(&self, ball: Ball) -> impl Iterator<Item = Range<usize>> {
+    pub fn rows_near(&self, ball: Ball) -> impl Iterator<Item = Range<usize>> {
         let [x, y, z, radius_m] = ball;
         let reach = radius_m + self.largest_m;
         let corner = |side: f64| self.cell([x, y, z, 0.0].map(|c| c + side * reach));
