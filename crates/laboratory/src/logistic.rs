@@ -123,12 +123,16 @@ impl Logistic {
         })
     }
 
-    /// The value of x with this probability, between 0 and 1. None: the probability does not depend
-    /// on x.
+    /// The value of x with this probability, between 0 and 1. None: the curve does not reach it near
+    /// the runs.
     pub fn value_at(&self, probability: f64) -> Option<ValueAt> {
         let wanted = (probability / (1.0 - probability)).ln();
         let [a, b] = self.scaled_coefficients;
         let x = (wanted - a) / b;
+        // Farther away the runs say nothing; a level curve has it nowhere.
+        if !(x.abs() <= FARTHEST) {
+            return None;
+        }
         let between = [-1.0, 1.0].map(|side| {
             let is_rejected = |distance: f64| self.is_rejected(x + side * distance, wanted);
             let mut far = (-10..)
@@ -137,10 +141,9 @@ impl Logistic {
             let far = far.find(|far| is_rejected(*far))?;
             Some(self.from + self.range * (x + side * end_of(0.0, far, is_rejected)))
         });
-        let value = self.from + self.range * x;
-        value.is_finite().then_some(ValueAt {
+        Some(ValueAt {
             probability,
-            value,
+            value: self.from + self.range * x,
             between,
         })
     }

@@ -150,6 +150,8 @@ fn runs_that_show_nothing_set_no_bounds() {
     assert_eq!(fit.value_at(0.1).unwrap().between[0], None);
     let level = Logistic::fit(&trials(&[(1.0, 8, 4), (2.0, 8, 4)])).unwrap();
     assert_near(level.probability(1.5), 0.5, 1e-12);
+    let fifths = Logistic::fit(&trials(&[(1.0, 5, 2), (2.0, 5, 2), (3.0, 5, 2)])).unwrap();
+    assert_eq!(fifths.value_at(0.1), None);
 }
 
 #[test]

@@ -153,7 +153,7 @@ fn read(folder: &Path, by: WallQuantity) -> Result<Cells> {
         return Err(Diagnostic::input(
             place,
             "there is no such file: no wall of the run has loads",
-            "write loads = { patch = \"20 mm\" } in a [walls.NAME] of the scene, and run it again",
+            "write loads = { patch = \"20 mm\" } in a [walls.NAME] of the scene, loads = {} if it has stl, and run it again",
         ));
     }
     let (column, over_area, ..) = by.column();

@@ -302,7 +302,7 @@ fn identity(study: &Study, scene_text: &str) -> Value {
     if !study.packs.is_empty() {
         let packs = study.packs.iter();
         let packs: Vec<_> = packs
-            .map(|pack| (&pack.body, pack.arguments(&[])))
+            .map(|pack| (&pack.body, pack.arguments(&[]), pack.content))
             .collect();
         identity["[pack]"] = json!(packs);
     }

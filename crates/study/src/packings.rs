@@ -1,8 +1,8 @@
 //! The bodies that a study packs itself: `[pack.NAME]`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use dem_io::hash::{file_hash, fnv1a_of_parts};
+use dem_io::hash::fnv1a_of_parts;
 use dem_scene::study::{BODY, Setting, Study};
 
 /// Folder of the packings in that of the study.
@@ -36,7 +36,7 @@ impl Packing {
 pub(crate) fn packings(study: &Study, settings: &[&Setting]) -> Vec<Packing> {
     let of = |pack: &dem_scene::study::Pack| {
         let arguments = pack.arguments(settings);
-        let name = format!("{}-{:016x}.vtp", pack.body, hash(&arguments));
+        let name = format!("{}-{:016x}.vtp", pack.body, hash(&arguments, pack.content));
         Packing {
             body: pack.body.clone(),
             arguments,
@@ -47,18 +47,11 @@ pub(crate) fn packings(study: &Study, settings: &[&Setting]) -> Vec<Packing> {
     study.packs.iter().map(of).collect()
 }
 
-/// Hash of some arguments, and of the files among them.
-fn hash(arguments: &[String]) -> u64 {
-    let file = |word: &String| {
-        let name = word.rsplit(['=', ':']).next().unwrap_or_default();
-        file_hash(Path::new(name)).unwrap_or_default().to_le_bytes()
-    };
-    let files: Vec<[u8; 8]> = arguments.iter().map(file).collect();
-    let words = arguments.iter().map(|word| word.as_bytes());
+/// Hash of some arguments, and of the files that they name.
+fn hash(arguments: &[String], content: u64) -> u64 {
+    let content = content.to_le_bytes();
     // No argument has a zero byte.
-    let parts: Vec<&[u8]> = words
-        .flat_map(|word| [word, &[0]])
-        .chain(files.iter().map(|file| &file[..]))
-        .collect();
+    let words = arguments.iter().flat_map(|word| [word.as_bytes(), &[0]]);
+    let parts: Vec<&[u8]> = words.chain([&content[..]]).collect();
     fnv1a_of_parts(&parts)
 }

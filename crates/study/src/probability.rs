@@ -12,7 +12,7 @@ use super::row::Row;
 use super::words::with_unit;
 
 /// The probabilities whose values of the parameter are given.
-const SHOWN: [f64; 3] = [0.1, 0.5, 0.9];
+pub(crate) const SHOWN: [f64; 3] = [0.1, 0.5, 0.9];
 /// Number of points of a curve.
 const CURVE: usize = 61;
 

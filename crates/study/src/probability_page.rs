@@ -3,7 +3,7 @@
 use dem_plots::{Axis, Column, Line, Marks, Page, Plot, Point, Row, Table};
 
 use super::csv_line::{line, number};
-use super::probability::{Probability, ProbabilityCase, percent};
+use super::probability::{Probability, ProbabilityCase, SHOWN, percent};
 use super::response_plot::{horizontal, shown_axes};
 use super::sweep_table::SweepTable;
 use super::text::{cell, heading};
@@ -174,8 +174,8 @@ pub fn probability_fit_csv(table: &SweepTable, of: &Probability) -> String {
         cells.extend([runs, with_outcome].map(|count| count.to_string()));
         let fit = case.fit.as_ref();
         cells.extend([fit.map(|fit| fit.a), fit.map(|fit| fit.b)].map(number));
-        for k in 0..3 {
-            let at = fit.and_then(|fit| fit.values.get(k));
+        for shown in SHOWN {
+            let at = fit.and_then(|fit| fit.values.iter().find(|at| at.probability == shown));
             cells.push(number(at.map(|at| at.value)));
             let ends = at.map_or([None; 2], |at| at.between);
             cells.extend(ends.map(number));

@@ -192,7 +192,8 @@ fn lines(text: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     std::iter::from_fn(move || {
         let (number, line) = plain_line()?;
         let mut whole = Cow::Borrowed(line);
-        while whole.last() == Some(&b'\\') {
+        // A comment ends with its line.
+        while whole.last() == Some(&b'\\') && !whole.contains(&b'#') {
             let joined = whole.to_mut();
             joined.pop();
             joined.push(b' ');

@@ -20,7 +20,7 @@ const RELATIONS: &str = "_rels/.rels";
 const USUAL_MODEL: &str = "3D/3dmodel.model";
 /// Largest number of triangles and of objects that are built: objects that repeat others could
 /// fill any memory.
-const MOST_TRIANGLES: usize = 100_000_000;
+const MOST_TRIANGLES: usize = 20_000_000;
 const MOST_OBJECTS: usize = 100_000;
 /// Largest number of objects within each other.
 const DEEPEST: usize = 100;
@@ -36,6 +36,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Facets> {
     let models = all_models(&archive, &main)?;
     let root = &models[&main];
     let mut built = Built::default();
+    built.beside.extend(&root.not_printed);
     for item in &root.items {
         built.add(&models, &main, item, &IN_PLACE, 0)?;
     }

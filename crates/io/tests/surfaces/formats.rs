@@ -271,6 +271,41 @@ fn a_3mf_that_is_none_or_never_ends_is_refused() {
     assert_says(&damaged, "part.3mf", "3D/part.model: damaged");
 }
 
+/// Items that are not printed are left out with a note, and elements of extensions, such as slices,
+/// are none of the model.
+#[test]
+fn a_3mf_has_more_than_what_is_printed() {
+    let cube = block([0.0; 3], [1.0; 3]);
+    let resources = format!(
+        "<object id=\"1\">{}</object><object id=\"2\">{}</object>\
+         <s:slicestack id=\"3\"><s:slice><s:vertices><s:vertex x=\"1\" y=\"2\"/></s:vertices></s:slice></s:slicestack>",
+        mesh(&cube),
+        mesh(&cube)
+    );
+    let items = "<item objectid=\"1\"/><item objectid=\"2\" printable=\"0\"/>";
+    let name = "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"";
+    let text = model(name, &resources, items);
+    let bytes = package(&[("3D/part.model", &text)], Zip::Stored);
+    let surface = read_surface(&bytes, "part.3mf", USUAL).unwrap();
+    assert_volume(&surface, 1e-9);
+    assert!(
+        surface.warnings[0].contains("not to be printed, were left out: 2."),
+        "{:?}",
+        surface.warnings
+    );
+}
+
+#[test]
+fn a_comment_ends_with_its_line() {
+    let facets = block([0.0; 3], [20.0, 12.0, 10.0]);
+    let text = format!("# from C:\\parts\\\n{}", obj(&facets));
+    let surface = read_surface(text.as_bytes(), "part.obj", USUAL).unwrap();
+    assert_same_solid(
+        &surface,
+        &read_surface(&binary(&facets), "part.stl", USUAL).unwrap(),
+    );
+}
+
 #[test]
 fn polygons_are_split() {
     // A prism on an L, whose ends are not convex, with a corner in the middle of an edge.

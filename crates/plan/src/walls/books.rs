@@ -8,6 +8,9 @@ use dem_physics::contact::patch_book::WallBookModel;
 use dem_physics::geometry::patches::{Patches, refuse_many};
 use dem_physics::geometry::{Bounds, Frame, Shape};
 
+/// A plane is taken to be touched over at least this length, m.
+const LEAST_REACH_M: f64 = 1e-3;
+
 /// How the loads of a wall are booked, with its shape and its place at the start. None: they are
 /// not.
 ///
@@ -24,8 +27,8 @@ pub(super) fn book_model(
     };
     let edge_m = loads.patch_m.unwrap_or(f64::INFINITY);
     if shape.plane().is_some() {
-        let reach_m = reach_m(state) / edge_m;
-        refuse_many(edge_m, reach_m * reach_m)?;
+        let reach = reach_m(state).max(LEAST_REACH_M) / edge_m;
+        refuse_many(edge_m, reach * reach)?;
     }
     Ok(Some(WallBookModel {
         patches: Patches::new(shape, edge_m)?,

@@ -132,10 +132,33 @@ fn frame_at(wall: &Wall, [now_s, time_s]: [f64; 2]) -> Frame {
     }
 }
 
+/// Where a wall is in the middle of its circle, or upright, if it has its frame of the start.
+fn middle(wall: &Wall) -> Frame {
+    let Frame { position_m, turned } = wall.frame;
+    match &wall.model.motion {
+        WallMotion::Orbit(orbit) => {
+            let from = orbit.place_m(0.0);
+            let position_m = [0, 1, 2].map(|k| position_m[k] - from[k]);
+            Frame { position_m, turned }
+        }
+        WallMotion::Gyration(gyration) => {
+            let upright = rotation(gyration.turned(0.0)).inverse() * rotation(turned);
+            Frame {
+                position_m,
+                turned: numbers(&upright),
+            }
+        }
+        _ => wall.frame,
+    }
+}
+
 /// Largest distance between two places of one point of the surface of a wall, m, over its whole
 /// motion; of a plane, of its point. None: its way is not known in advance, or has no end. The wall
 /// is where it is at this time, s.
 pub fn stroke_m(wall: &Wall, now_s: f64) -> Option<f64> {
+    if matches!(&wall.model.motion, WallMotion::Gyration(gyration) if gyration.spin_rad_s != 0.0) {
+        return None;
+    }
     let moments = moments_s(&wall.model.motion).into_iter();
     let frames: Vec<Frame> = moments.map(|at_s| frame_at(wall, [now_s, at_s])).collect();
     let mut stroke_m = frames.first().map(|_| 0.0)?;
@@ -149,7 +172,8 @@ pub fn stroke_m(wall: &Wall, now_s: f64) -> Option<f64> {
     Some(stroke_m)
 }
 
-/// Pairs of walls that do not overlap at the start, but which their motion drives into each other,
+/// Pairs of walls that do not overlap at the start, in the middle of their circles or upright, but
+/// which their motion drives into each other,
 /// a sentence each. The walls are where they start.
 pub(crate) fn crossings(walls: &[Wall]) -> Vec<String> {
     let comes_back = |wall: &Wall| frequency_hz(&wall.model.motion).is_some();
@@ -177,12 +201,19 @@ pub(crate) fn crossings(walls: &[Wall]) -> Vec<String> {
 struct Seen<'a> {
     wall: &'a Wall,
     points: Vec<[f64; 3]>,
+    /// Where it is at any time. None: it is infinite.
+    swept: Option<Bounds>,
 }
 
 impl<'a> Seen<'a> {
     fn new(wall: &'a Wall) -> Self {
         let points = points_of(&wall.model.shape);
-        Self { wall, points }
+        let swept = swept(wall);
+        Self {
+            wall,
+            points,
+            swept,
+        }
     }
 
     /// Depth of its deepest point in another wall, m, in these frames.
@@ -198,6 +229,26 @@ impl<'a> Seen<'a> {
     }
 }
 
+/// The box in which a wall is at any time of its period. None: it is infinite.
+fn swept(wall: &Wall) -> Option<Bounds> {
+    let own = wall.model.shape.bounds();
+    if !own.diagonal_m().is_finite() {
+        return None;
+    }
+    let moments = moments_s(&wall.model.motion).into_iter();
+    let frames = moments.map(|at_s| frame_at(wall, [0.0, at_s]));
+    let corner = |at: usize| {
+        [0, 1, 2].map(|k| match at >> k & 1 {
+            0 => own.low[k],
+            _ => own.high[k],
+        })
+    };
+    let places = std::iter::once(wall.frame)
+        .chain(frames)
+        .flat_map(|frame| (0..8).map(move |at| frame.to_space(corner(at))));
+    Some(Bounds::of(places.collect::<Vec<_>>()))
+}
+
 /// Depth of the deepest point of each of two walls in the other one, m, in these frames.
 fn overlap_m(one: &Seen<'_>, other: &Seen<'_>, [first, second]: [&Frame; 2]) -> f64 {
     let depth_m = one.depth_m(first, other, second);
@@ -207,9 +258,18 @@ fn overlap_m(one: &Seen<'_>, other: &Seen<'_>, [first, second]: [&Frame; 2]) -> 
 /// The sentence for a wall that comes back and another one that stands or comes back.
 fn crossing(one: &Seen<'_>, other: &Seen<'_>) -> Option<String> {
     let (wall, beside) = (one.wall, other.wall);
+    let is_apart = one.swept.zip(other.swept);
+    let is_apart = is_apart.is_some_and(|(one, other)| !one.overlaps(&other));
+    // Walls on one orbit move as one.
+    let is_one = matches!(wall.model.motion, WallMotion::Orbit(_))
+        && wall.model.motion == beside.model.motion;
+    if is_apart || is_one {
+        return None;
+    }
     let sizes_m = [wall, beside].map(|wall| wall.model.shape.bounds().diagonal_m());
     let touch_m = TOUCH * sizes_m.into_iter().fold(f64::INFINITY, f64::min);
-    let is_apart = overlap_m(one, other, [&wall.frame, &beside.frame]) <= touch_m;
+    let [middle, middle_beside] = [wall, beside].map(middle);
+    let is_apart = overlap_m(one, other, [&middle, &middle_beside]) <= touch_m;
     if !(touch_m.is_finite() && is_apart) {
         return None;
     }

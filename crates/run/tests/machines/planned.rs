@@ -95,9 +95,11 @@ fn strokes_are_those_of_the_farthest_point() {
         let later_m = stroke_m(&state.walls[0], state.time_s).unwrap();
         assert!((later_m - got_m).abs() < 1e-9, "{wall}: {later_m}, {got_m}");
     }
-    let turns = deck("angular_velocity = [0, 1, 0]");
-    let state = planned(&scene("", &[&turns]).replace(", }", " }")).state;
-    assert_eq!(stroke_m(&state.walls[0], 0.0), None);
+    let spins = "gyration = { axis = [0, 0, -1], towards = [1, 0, 0], angle = 0.1, frequency = 2, spin = 1 }";
+    for endless in [deck("angular_velocity = [0, 1, 0]"), rod(spins)] {
+        let state = planned(&scene("", &[&endless]).replace(", }", " }")).state;
+        assert_eq!(stroke_m(&state.walls[0], 0.0), None);
+    }
 }
 
 #[test]

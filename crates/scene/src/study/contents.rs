@@ -97,6 +97,8 @@ pub struct Pack {
     pub shape: PathBuf,
     /// `options` of `dem-pack`, word by word.
     pub options: Vec<String>,
+    /// Hash of the shape and of the files among the options.
+    pub content: u64,
     /// Its place in the study.
     pub place: String,
 }

@@ -1,6 +1,6 @@
 //! `[pack.NAME]`: bodies that a study packs itself, with options of `dem-pack` that may vary.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::contents::{BODY, PACK, Pack, Study};
 use super::keys::PACKED;
@@ -8,23 +8,37 @@ use super::values::tidy;
 use crate::names::suggestion;
 use crate::table::Table;
 use dem_io::diagnostic::{Diagnostic, Result};
+use dem_io::hash::{file_hash, fnv1a_of_parts};
 
 /// The bodies that are packed.
 pub(super) fn packs(root: &Table<'_>, folder: &Path) -> Result<Vec<Pack>> {
     let read = |(body, field): (String, crate::field::Field<'_>)| {
         let table = Table::of(&field, &PACKED)?;
         let shape = crate::paths::named_path(&table.need("shape")?, folder)?;
+        let shape = tidy(shape);
         let options: Option<String> = table.read("options")?;
+        let options: Vec<String> = (options.unwrap_or_default().split_whitespace())
+            .map(str::to_owned)
+            .collect();
         Ok(Pack {
             body,
-            shape: tidy(shape),
-            options: (options.unwrap_or_default().split_whitespace())
-                .map(str::to_owned)
-                .collect(),
+            content: content(&shape, &options),
+            shape,
+            options,
             place: field.document.place(field.node.origin),
         })
     };
     root.named("pack")?.into_iter().map(read).collect()
+}
+
+/// Hash of a shape and of the files among some options, such as a sieve curve.
+fn content(shape: &Path, options: &[String]) -> u64 {
+    let named = |word: &String| word.rsplit(['=', ':']).next().map(PathBuf::from);
+    let files = std::iter::once(shape.to_owned()).chain(options.iter().filter_map(named));
+    let hashes: Vec<[u8; 8]> = files
+        .map(|file| file_hash(&file).unwrap_or_default().to_le_bytes())
+        .collect();
+    fnv1a_of_parts(&hashes.iter().map(|hash| &hash[..]).collect::<Vec<_>>())
 }
 
 /// Refuses options of bodies that are not packed, options that are given twice, and files of bodies

@@ -111,7 +111,11 @@ impl Bench<'_> {
         let mut overrides = overrides(&self.scene, self.unknowns, factors);
         overrides.extend(self.pace.iter().cloned());
         let SceneText { text, source, .. } = self.scene;
-        let scene = scene_from_text(text, source, &overrides)?;
+        let mut scene = scene_from_text(text, source, &overrides)?;
+        // The numbers that are found are those of this body.
+        for kind in scene.bonds.values_mut() {
+            kind.size_correction = false;
+        }
         let mut bodies = self.others.clone();
         bodies.insert(self.body.to_owned(), self.packings[at].clone());
         let tested = tested_body(&scene, &bodies, self.threads)?;

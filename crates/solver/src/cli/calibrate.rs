@@ -29,7 +29,7 @@ use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 pub(super) use self::arguments::CalibrateArguments;
 use self::arguments::PACKINGS;
 use self::output_files::{OutputFiles, not_met};
-use super::packings::{Packings, smallest_extent_m};
+use super::packings::{Packings, spheres_across};
 use super::pool::in_pool;
 use super::progress::LogOfTests;
 use crate::calibration::{Beginning, Bench, Prospect, SceneText, pace, prospect, unknowns};
@@ -255,7 +255,7 @@ impl Job<'_> {
         case.particles = bodies[0].positions.len();
         case.bonds = bodies[0].bonds.len();
         case.mean_diameter_m = bodies[0].mean_diameter_m();
-        case.spheres_across = smallest_extent_m(&bodies[0]) / case.mean_diameter_m;
+        case.spheres_across = spheres_across(&bodies[0]);
         let bar = self.options.progress_bar(&case.name);
         if case.start.is_none() && case.rounds.is_empty() {
             bar.set_message("first numbers, without time steps");

@@ -195,8 +195,14 @@ fn same_files(files: &[PathBuf]) -> Option<(&PathBuf, &PathBuf)> {
     (0..files.len()).find_map(|at| twice(&at))
 }
 
+/// Spheres across the thinnest part of a body, as its file says, or across its box.
+pub(super) fn spheres_across(body: &Body) -> f64 {
+    let of_box = || smallest_extent_m(body) / body.mean_diameter_m();
+    body.about.particles_across.unwrap_or_else(of_box)
+}
+
 /// Smallest extent of a body, m.
-pub(super) fn smallest_extent_m(body: &Body) -> f64 {
+fn smallest_extent_m(body: &Body) -> f64 {
     let extent = |k: usize| {
         let ends = body.positions.iter().zip(&body.radii);
         let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (p, r)| {

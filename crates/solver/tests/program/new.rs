@@ -93,7 +93,7 @@ fn is_made_and_runs_for(name: &str, time: &str, bodies: u64) -> (Bench, Value) {
     (bench, summary)
 }
 
-/// The stroke and the mean power of the only wall that moves, in summary and page.
+/// The stroke and the mean power of a wall that moves, in summary and page.
 fn assert_drives(name: &str, wall: &str, stroke_mm: f64, time: &str) {
     let (bench, summary) = is_made_and_runs_for(name, time, 1);
     let [stroke_m, work_j, power_w] =
@@ -104,7 +104,6 @@ fn assert_drives(name: &str, wall: &str, stroke_mm: f64, time: &str) {
     );
     let time_s = summary["simulated_s"].as_f64().unwrap();
     assert!((power_w.unwrap() * time_s - work_j.unwrap()).abs() <= 1e-12 * work_j.unwrap().abs());
-    assert_eq!(summary["walls"].as_object().unwrap().len(), 1);
     let page = fs::read_to_string(bench.path(name).join("results/report.html")).unwrap();
     assert!(page.contains("moving wall"), "{name}");
 }

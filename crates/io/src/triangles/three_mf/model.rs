@@ -23,6 +23,8 @@ pub(super) struct Model {
     pub(super) objects: BTreeMap<u32, Object>,
     /// What is to be built.
     pub(super) items: Vec<Reference>,
+    /// Numbers of the objects of items that are not to be printed.
+    pub(super) not_printed: Vec<u32>,
 }
 
 /// An object: triangles, or other objects.
@@ -51,6 +53,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Model> {
     let mut model = Model::default();
     let mut has_model = false;
     let mut object: Option<u32> = None;
+    let mut own: Option<String> = None;
     loop {
         let before = reader.buffer_position();
         let damaged = || {
@@ -66,11 +69,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Model> {
         match event {
             Event::Start(element) | Event::Empty(element) => {
                 let name = element.local_name();
-                has_model |= name.as_ref() == "model";
+                let prefix = element.name().prefix();
+                let prefix = prefix.map_or("", |prefix| prefix.into_inner()).to_owned();
+                if name.as_ref() == "model" {
+                    has_model = true;
+                    own = Some(prefix);
+                } else if own.as_ref().is_some_and(|own| *own != prefix) {
+                    continue;
+                }
                 open(&element, name.as_ref(), &mut model, &mut object)
                     .map_err(|problem| Diagnostic::input(damaged(), problem, REMEDY_REPAIR))?;
             }
             Event::End(element) if element.local_name().as_ref() == "model" => return Ok(model),
+            Event::End(element) if element.local_name().as_ref() == "object" => object = None,
             Event::Eof => break,
             _ => {}
         }
@@ -104,6 +115,9 @@ fn open(
                 return Err(format!("two objects have the number {id}"));
             }
             *current = Some(id);
+        }
+        "item" if attribute(element, "printable")?.as_deref() == Some("0") => {
+            model.not_printed.push(whole(element, "objectid")?);
         }
         "item" => model.items.push(reference(element)?),
         "vertex" | "triangle" | "component" => {

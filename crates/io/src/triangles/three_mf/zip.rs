@@ -8,7 +8,7 @@ use flate2::read::DeflateDecoder;
 use std::io::Read;
 
 /// Largest number of bytes of an unpacked file.
-const MOST_BYTES: u64 = 1 << 32;
+const MOST_BYTES: u64 = 1 << 30;
 
 const END: &[u8] = b"PK\x05\x06";
 const END_64: &[u8] = b"PK\x06\x06";

@@ -26,7 +26,7 @@ use crate::calibration::{
     JointBeginning, JointBench, Prospect, TestBodies, TestScene, aims, free_numbers, pace,
     prospect, shared_bonds,
 };
-use crate::cli::packings::{Packings, smallest_extent_m};
+use crate::cli::packings::{Packings, spheres_across};
 use crate::cli::pool::in_pool;
 use crate::cli::progress::LogOfTests;
 use crate::interrupt::Interrupt;
@@ -438,7 +438,7 @@ fn describe(test: &mut JointTest, body: &Body) {
     test.particles = body.positions.len();
     test.bonds = body.bonds.len();
     test.mean_diameter_m = body.mean_diameter_m();
-    test.spheres_across = smallest_extent_m(body) / test.mean_diameter_m;
+    test.spheres_across = spheres_across(body);
 }
 
 /// Takes the slopes of the modulus, by test, and the travel at failure of each test, m.

@@ -136,3 +136,21 @@ fn what_cannot_be_packed_is_refused_before_anything_runs() {
     refused("options = \"--diameter 90mm\"", seeds, "90 mm");
     refused("", "\"pack.bar.diameter\" = [\"5 kg\"]", "5kg");
 }
+
+/// Runs of one shape are not continued with another.
+#[test]
+fn a_changed_shape_is_another_study() {
+    let bench = bench(
+        "options = \"--diameter 6mm..8mm\"",
+        "\"pack.bar.seed\" = [1, 2]",
+    );
+    let study = fs::read_to_string(bench.path("study.toml")).unwrap();
+    let shape = root().join("data/shapes/bar.stl").canonicalize().unwrap();
+    let study = study.replace(&format!("{shape:?}"), "\"bar.stl\"");
+    bench.write("study.toml", &study);
+    fs::copy(shape, bench.path("bar.stl")).unwrap();
+    good(&bench, &[]);
+    fs::copy(root().join("data/shapes/disc.stl"), bench.path("bar.stl")).unwrap();
+    let said = bad(&bench, &["--resume"], 2);
+    assert!(said.contains("[pack]") || said.contains("study"), "{said}");
+}
