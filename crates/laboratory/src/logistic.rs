@@ -130,7 +130,7 @@ impl Logistic {
         let [a, b] = self.scaled_coefficients;
         let x = (wanted - a) / b;
         // Farther away the runs say nothing; a level curve has it nowhere.
-        if !(x.abs() <= FARTHEST) {
+        if x.is_nan() || x.abs() > FARTHEST {
             return None;
         }
         let between = [-1.0, 1.0].map(|side| {
