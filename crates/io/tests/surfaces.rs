@@ -9,11 +9,13 @@ mod gaps;
 mod properties;
 mod shells;
 mod solids;
+mod three_mf;
 mod written;
 
 use body::assert_solid;
 use dem_io::surface::{ReadSettings, read_surface};
 use dem_io::{Diagnostic, Surface};
+use proptest::sample::Index;
 
 const METRES: ReadSettings = ReadSettings {
     unit_m: Some(1.0),
@@ -35,6 +37,27 @@ fn read(bytes: &[u8], settings: ReadSettings) -> Surface {
         read_surface(bytes, "part.stl", settings).unwrap_or_else(|error| panic!("{error}"));
     assert_solid(&surface);
     surface
+}
+
+/// Bytes with others at some places, cut off and with an end repeated.
+fn damaged(
+    mut bytes: Vec<u8>,
+    damage: Vec<(Index, u8)>,
+    keep: Option<Index>,
+    repeat: Option<Index>,
+) -> Vec<u8> {
+    for (place, value) in damage {
+        let place = place.index(bytes.len());
+        bytes[place] = value;
+    }
+    if let Some(keep) = keep {
+        bytes.truncate(keep.index(bytes.len()));
+    }
+    if let (Some(repeat), true) = (repeat, !bytes.is_empty()) {
+        let from = repeat.index(bytes.len());
+        bytes.extend_from_within(from..);
+    }
+    bytes
 }
 
 fn shape(name: &str) -> Surface {

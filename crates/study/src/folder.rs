@@ -95,6 +95,9 @@ impl SweepFolder {
             ));
         }
         fs::create_dir_all(path.join(RUNS)).map_err(|error| cannot(path, &error))?;
+        if !study.packs.is_empty() {
+            fs::create_dir_all(path.join(PACKINGS)).map_err(|error| cannot(path, &error))?;
+        }
         let folder = Self {
             path: path.to_owned(),
             _lock: lock(path)?,

@@ -24,39 +24,46 @@ enum MadeBy {
 }
 
 const FORMATS: [Format; 21] = [
-    cad("STEP", &[b"ISO-10303-21"], &["step", "stp", "p21"]),
-    cad("IGES", &[], &["iges", "igs"]),
-    cad("BREP", &[b"DBRep_DrawableShape"], &["brep", "brp"]),
-    cad("FreeCAD", &[], &["fcstd"]),
-    cad("Parasolid", &[], &["x_t", "x_b"]),
-    cad("ACIS", &[], &["sat", "sab"]),
-    cad("SolidWorks", &[], &["sldprt", "sldasm"]),
-    cad("Inventor", &[], &["ipt", "iam"]),
-    cad("CATIA", &[], &["catpart", "catproduct"]),
-    cad("DXF", &[], &["dxf"]),
-    cad("DWG", &[b"AC10"], &["dwg"]),
-    cad("OpenSCAD", &[], &["scad"]),
-    mesh("VRML", &[b"#VRML"], &["wrl", "vrml"]),
-    mesh("X3D", &[], &["x3d"]),
-    mesh("glTF", &[b"glTF"], &["glb", "gltf"]),
-    mesh("FBX", &[b"Kaydara FBX"], &["fbx"]),
-    mesh("COLLADA", &[], &["dae"]),
-    mesh("AMF", &[], &["amf"]),
-    mesh("OFF", &[b"OFF"], &["off"]),
-    mesh(
+    of(
+        MadeBy::Cad,
+        "STEP",
+        &[b"ISO-10303-21"],
+        &["step", "stp", "p21"],
+    ),
+    of(MadeBy::Cad, "IGES", &[], &["iges", "igs"]),
+    of(
+        MadeBy::Cad,
+        "BREP",
+        &[b"DBRep_DrawableShape"],
+        &["brep", "brp"],
+    ),
+    of(MadeBy::Cad, "FreeCAD", &[], &["fcstd"]),
+    of(MadeBy::Cad, "Parasolid", &[], &["x_t", "x_b"]),
+    of(MadeBy::Cad, "ACIS", &[], &["sat", "sab"]),
+    of(MadeBy::Cad, "SolidWorks", &[], &["sldprt", "sldasm"]),
+    of(MadeBy::Cad, "Inventor", &[], &["ipt", "iam"]),
+    of(MadeBy::Cad, "CATIA", &[], &["catpart", "catproduct"]),
+    of(MadeBy::Cad, "DXF", &[], &["dxf"]),
+    of(MadeBy::Cad, "DWG", &[b"AC10"], &["dwg"]),
+    of(MadeBy::Cad, "OpenSCAD", &[], &["scad"]),
+    of(MadeBy::Mesh, "VRML", &[b"#VRML"], &["wrl", "vrml"]),
+    of(MadeBy::Mesh, "X3D", &[], &["x3d"]),
+    of(MadeBy::Mesh, "glTF", &[b"glTF"], &["glb", "gltf"]),
+    of(MadeBy::Mesh, "FBX", &[b"Kaydara FBX"], &["fbx"]),
+    of(MadeBy::Mesh, "COLLADA", &[], &["dae"]),
+    of(MadeBy::Mesh, "AMF", &[], &["amf"]),
+    of(MadeBy::Mesh, "OFF", &[b"OFF"], &["off"]),
+    of(
+        MadeBy::Mesh,
         "VTK",
         &[b"# vtk", b"<VTKFile", b"<?xml version=\"1.0\"?>\n<VTKFile"],
         &["vtk", "vtp", "vtu"],
     ),
-    Format {
-        name: "Blender",
-        begins: &[b"BLENDER"],
-        ends: &["blend"],
-        made_by: MadeBy::Blender,
-    },
+    of(MadeBy::Blender, "Blender", &[b"BLENDER"], &["blend"]),
 ];
 
-const fn cad(
+const fn of(
+    made_by: MadeBy,
     name: &'static str,
     begins: &'static [&'static [u8]],
     ends: &'static [&'static str],
@@ -65,20 +72,7 @@ const fn cad(
         name,
         begins,
         ends,
-        made_by: MadeBy::Cad,
-    }
-}
-
-const fn mesh(
-    name: &'static str,
-    begins: &'static [&'static [u8]],
-    ends: &'static [&'static str],
-) -> Format {
-    Format {
-        name,
-        begins,
-        ends,
-        made_by: MadeBy::Mesh,
+        made_by,
     }
 }
 

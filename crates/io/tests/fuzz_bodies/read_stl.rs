@@ -1,10 +1,10 @@
-//! Conditions that hold for any bytes given to the reader of files of triangles. Shared by the fuzz target and the
-//! bounded run of the ordinary tests.
+//! Conditions that hold for any bytes given to the reader of files of triangles. Shared by the fuzz
+//! target and the bounded run of the ordinary tests.
 
 use dem_io::surface::{ReadSettings, read_surface};
 
-/// Reads `bytes` as a file of triangles, with and without filling holes: the result is an error, or a surface
-/// that is closed and finite.
+/// Reads `bytes` as a file of triangles, with and without filling holes: the result is an error, or
+/// a surface that is closed and finite.
 pub(crate) fn read_stl(bytes: &[u8]) {
     for fill_holes in [false, true] {
         match read_surface(

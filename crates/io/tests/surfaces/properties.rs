@@ -3,7 +3,7 @@
 use super::body::{self, assert_solid};
 use super::gaps::block_with_t_junction;
 use super::solids::{self, Facet, ascii, binary, block, moved, turned};
-use super::{METRES, assert_same_solid, read, shape_bytes};
+use super::{METRES, assert_same_solid, damaged, read, shape_bytes};
 use dem_io::surface::read_surface;
 use proptest::prelude::*;
 
@@ -83,23 +83,12 @@ proptest! {
         keep in prop::option::of(any::<prop::sample::Index>()),
         repeat in prop::option::of(any::<prop::sample::Index>()),
     ) {
-        let mut bytes = match which {
+        let bytes = match which {
             0 => shape_bytes("02_binary_box_mm"),
             1 => shape_bytes("01_ascii_box_mm"),
             2 => binary(&block_with_t_junction()),
             _ => binary(&[block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0; 3])].concat()),
         };
-        for (place, value) in damage {
-            let place = place.index(bytes.len());
-            bytes[place] = value;
-        }
-        if let Some(keep) = keep {
-            bytes.truncate(keep.index(bytes.len()));
-        }
-        if let (Some(repeat), true) = (repeat, !bytes.is_empty()) {
-            let from = repeat.index(bytes.len());
-            bytes.extend_from_within(from..);
-        }
-        body::read_stl(&bytes);
+        body::read_stl(&damaged(bytes, damage, keep, repeat));
     }
 }

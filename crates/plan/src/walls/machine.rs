@@ -119,34 +119,33 @@ fn frame_at(wall: &Wall, [now_s, time_s]: [f64; 2]) -> Frame {
             }
         }
         WallMotion::Orbit(orbit) => {
-            let [from, to] = [now_s, time_s].map(|at_s| orbit.place_m(at_s));
-            let position_m = [0, 1, 2].map(|k| position_m[k] + to[k] - from[k]);
+            let Frame { position_m, turned } = middle(wall, now_s);
+            let place_m = orbit.place_m(time_s);
+            let position_m = [0, 1, 2].map(|k| position_m[k] + place_m[k]);
             Frame { position_m, turned }
         }
         WallMotion::Gyration(gyration) => {
-            let [from, to] = [now_s, time_s].map(|at_s| rotation(gyration.turned(at_s)));
-            let turned = numbers(&(to * from.inverse() * rotation(turned)));
+            let upright = rotation(middle(wall, now_s).turned);
+            let turned = numbers(&(rotation(gyration.turned(time_s)) * upright));
             Frame { position_m, turned }
         }
         _ => wall.frame,
     }
 }
 
-/// Where a wall is in the middle of its circle, or upright, if it has its frame of the start.
-fn middle(wall: &Wall) -> Frame {
+/// Where a wall is in the middle of its circle, or upright, if it has its frame of this time, s.
+fn middle(wall: &Wall, now_s: f64) -> Frame {
     let Frame { position_m, turned } = wall.frame;
     match &wall.model.motion {
         WallMotion::Orbit(orbit) => {
-            let from = orbit.place_m(0.0);
-            let position_m = [0, 1, 2].map(|k| position_m[k] - from[k]);
+            let place_m = orbit.place_m(now_s);
+            let position_m = [0, 1, 2].map(|k| position_m[k] - place_m[k]);
             Frame { position_m, turned }
         }
         WallMotion::Gyration(gyration) => {
-            let upright = rotation(gyration.turned(0.0)).inverse() * rotation(turned);
-            Frame {
-                position_m,
-                turned: numbers(&upright),
-            }
+            let upright = rotation(gyration.turned(now_s)).inverse() * rotation(turned);
+            let turned = numbers(&upright);
+            Frame { position_m, turned }
         }
         _ => wall.frame,
     }
@@ -173,8 +172,7 @@ pub fn stroke_m(wall: &Wall, now_s: f64) -> Option<f64> {
 }
 
 /// Pairs of walls that do not overlap at the start, in the middle of their circles or upright, but
-/// which their motion drives into each other,
-/// a sentence each. The walls are where they start.
+/// which their motion drives into each other, a sentence each. The walls are where they start.
 pub(crate) fn crossings(walls: &[Wall]) -> Vec<String> {
     let comes_back = |wall: &Wall| frequency_hz(&wall.model.motion).is_some();
     if !walls.iter().any(comes_back) {
@@ -237,16 +235,10 @@ fn swept(wall: &Wall) -> Option<Bounds> {
     }
     let moments = moments_s(&wall.model.motion).into_iter();
     let frames = moments.map(|at_s| frame_at(wall, [0.0, at_s]));
-    let corner = |at: usize| {
-        [0, 1, 2].map(|k| match at >> k & 1 {
-            0 => own.low[k],
-            _ => own.high[k],
-        })
-    };
     let places = std::iter::once(wall.frame)
         .chain(frames)
-        .flat_map(|frame| (0..8).map(move |at| frame.to_space(corner(at))));
-    Some(Bounds::of(places.collect::<Vec<_>>()))
+        .flat_map(|frame| own.corners().map(|corner| frame.to_space(corner)));
+    Some(Bounds::of(places))
 }
 
 /// Depth of the deepest point of each of two walls in the other one, m, in these frames.
@@ -268,7 +260,7 @@ fn crossing(one: &Seen<'_>, other: &Seen<'_>) -> Option<String> {
     }
     let sizes_m = [wall, beside].map(|wall| wall.model.shape.bounds().diagonal_m());
     let touch_m = TOUCH * sizes_m.into_iter().fold(f64::INFINITY, f64::min);
-    let [middle, middle_beside] = [wall, beside].map(middle);
+    let [middle, middle_beside] = [wall, beside].map(|wall| middle(wall, 0.0));
     let is_apart = overlap_m(one, other, [&middle, &middle_beside]) <= touch_m;
     if !(touch_m.is_finite() && is_apart) {
         return None;

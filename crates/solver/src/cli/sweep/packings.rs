@@ -1,8 +1,7 @@
 //! The bodies that a study packs itself, made before the runs that need them.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::body::write_body;
@@ -48,7 +47,6 @@ pub(super) fn make_packings<'a>(
     if missing.is_empty() {
         return Ok(());
     }
-    make_folder(&study.packings)?;
     let template = "pack [{bar:40}] {pos}/{len} bodies  {eta} left";
     let bar = progress_bar(quiet, missing.len(), template);
     bar.set_position(0);
@@ -75,15 +73,4 @@ fn make(packing: &Packing, interrupted: &AtomicBool) -> Result<()> {
     let made = recipe.make(recipe.seed(), &go_on);
     let (body, _) = made.map_err(|error| error.within(&packing.place))?;
     write_body(&body, &packing.file)
-}
-
-fn make_folder(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|error| {
-        let problem = format!("the folder cannot be made: {error}");
-        Diagnostic::failed(
-            folder.display().to_string(),
-            problem,
-            "name another with --output",
-        )
-    })
 }

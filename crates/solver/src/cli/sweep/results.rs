@@ -62,8 +62,8 @@ pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolde
     })
 }
 
-/// `sweep.csv`, `responses.csv`, `find.csv`, `probability.csv`, `effects.csv`, `sweep.json`, `sweep.html` and the
-/// plots of each measure.
+/// `sweep.csv`, `responses.csv`, `find.csv`, `probability.csv`, `effects.csv`, `sweep.json`,
+/// `sweep.html` and the plots of each measure.
 pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
     let file = |name: &str| folder.path().join(name);
     write_file(&file("sweep.csv"), |out| {
