@@ -7,6 +7,7 @@
 
 mod case;
 mod joint;
+mod pace;
 mod page;
 mod record;
 mod resolution;
@@ -22,6 +23,7 @@ pub use joint::{
     Aim, Free, JOINT_VERSION, Joint, JointStart, JointTest, calibrate_joint, check_joint_rate,
     joint_origin, joint_page, joint_report, next_of_joint, read_joint, weighted_step, write_joint,
 };
+pub use pace::pace;
 pub use page::{page, sizes};
 pub use record::{FORMAT_VERSION, Record, read_record, write_record};
 pub use resolution::{coarsest, curve_error};

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use dem_calibration::{Case, End, Record, Round, Unknown, read_record};
+use dem_calibration::{Case, End, Record, Round, Unknown, pace, read_record};
 use dem_io::body::read_body;
 use dem_laboratory::{Statistic, half_width};
 
@@ -17,8 +17,6 @@ const FIRST_FRESH_SEED: u32 = 101;
 /// Number of such packings, and of those with spheres of other diameters.
 const FRESH: u32 = 6;
 const OTHERS: u32 = 4;
-/// As in `dem-run calibrate`: stroke over travel at failure.
-const ROOM: f64 = 1.6;
 
 /// A scene, its tested body and the shape of that body.
 #[derive(Clone, Copy)]
@@ -327,10 +325,9 @@ impl Tested<'_> {
         let mut values = more.to_vec();
         values.extend(["test.rate_check=false", "output.frames=\"10 s\""].map(str::to_owned));
         if let Some(travel_m) = case.start.as_ref().and_then(|start| start.travel_m) {
-            let stroke_m = test.stroke_m.max(ROOM * travel_m + case.mean_diameter_m);
-            values.push(format!("test.stroke={stroke_m:e}"));
-            let periods = test.periods * stroke_m / travel_m;
-            values.push(format!("test.periods={periods:e}"));
+            let periods = test.rate_m_s.is_none().then_some(test.periods);
+            let diameter_m = case.mean_diameter_m;
+            values.extend(pace(test.stroke_m, periods, travel_m, diameter_m));
         }
         let mut options = sets(&values);
         options.push(body(tested, &packed));

@@ -14,4 +14,4 @@ pub(crate) use choice::{ModulusBy, SceneText, unknowns};
 pub(crate) use joint::{TestScene, aims, free_numbers, shared_bonds};
 pub(crate) use joint_bench::{JointBeginning, JointBench, TestBodies};
 pub(crate) use prospect::{Prospect, prospect};
-pub(crate) use start::{Beginning, pace};
+pub(crate) use start::{Beginning, pace_of};

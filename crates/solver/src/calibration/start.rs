@@ -4,7 +4,7 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use dem_calibration::{Start, Unknown};
+use dem_calibration::{Start, Unknown, pace};
 use dem_io::Result;
 use dem_io::diagnostic::Kind;
 use dem_io::units::show_quantity;
@@ -28,8 +28,6 @@ const MOST_SOLUTIONS: usize = 4;
 const LEAST_SLOPE: f64 = 0.25;
 /// How much stiffer bonds may have to be before it is asked whether that helps.
 const MUCH_STIFFER: f64 = 10.0;
-/// Stroke over the travel at failure that strong packings need.
-const ROOM: f64 = 1.6;
 
 /// What is known before the first round.
 pub(crate) enum Beginning {
@@ -52,17 +50,10 @@ fn failed_bonds(kind: TestType) -> f64 {
     }
 }
 
-/// `--set` values with which the stroke is long enough for a body that fails at this travel, and
-/// the periods of the test are spread over that travel, not over the stroke. A body of spheres of
-/// this mean diameter may rock by as much until all pins touch.
-pub(crate) fn pace(test: &Test, travel_m: f64, mean_diameter_m: f64) -> Vec<String> {
-    let stroke_m = test.stroke_m.max(ROOM * travel_m + mean_diameter_m);
-    let mut sets = vec![format!("test.stroke={stroke_m:e}")];
-    if test.rate_m_s.is_none() {
-        let periods = test.periods * stroke_m / travel_m;
-        sets.push(format!("test.periods={periods:.4e}"));
-    }
-    sets
+/// The [`pace`] of a test.
+pub(crate) fn pace_of(test: &Test, travel_m: f64, mean_diameter_m: f64) -> Vec<String> {
+    let periods = test.rate_m_s.is_none().then_some(test.periods);
+    pace(test.stroke_m, periods, travel_m, mean_diameter_m)
 }
 
 /// What equilibria of all packings say in the mean.

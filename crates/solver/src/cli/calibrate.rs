@@ -32,7 +32,7 @@ use self::output_files::{OutputFiles, not_met};
 use super::packings::{Packings, spheres_across};
 use super::pool::in_pool;
 use super::progress::LogOfTests;
-use crate::calibration::{Beginning, Bench, Prospect, SceneText, pace, prospect, unknowns};
+use crate::calibration::{Beginning, Bench, Prospect, SceneText, pace_of, prospect, unknowns};
 use crate::interrupt::Interrupt;
 
 /// Calibrates, writes material, page and record, and prints a summary. Targets that are not met are
@@ -271,7 +271,7 @@ impl Job<'_> {
         }
         let travel_m = case.start.as_ref().and_then(|start| start.travel_m);
         if let (Some(travel_m), Some(test)) = (travel_m, self.test) {
-            bench.pace = pace(test, travel_m, case.mean_diameter_m);
+            bench.pace = pace_of(test, travel_m, case.mean_diameter_m);
         }
         self.do_tests(record, at, &bench, case, workers, &bar)
     }

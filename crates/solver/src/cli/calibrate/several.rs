@@ -23,7 +23,7 @@ use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use super::arguments::{CalibrateArguments, PACKINGS};
 use super::output_files::{OutputFiles, not_met};
 use crate::calibration::{
-    JointBeginning, JointBench, Prospect, TestBodies, TestScene, aims, free_numbers, pace,
+    JointBeginning, JointBench, Prospect, TestBodies, TestScene, aims, free_numbers, pace_of,
     prospect, shared_bonds,
 };
 use crate::cli::packings::{Packings, spheres_across};
@@ -374,7 +374,7 @@ impl Job<'_> {
         }
         for (at, test) in joint.tests.iter().enumerate() {
             if let Some(travel_m) = test.travel_m {
-                bench.paces[at] = pace(self.tests[at].test()?, travel_m, test.mean_diameter_m);
+                bench.paces[at] = pace_of(self.tests[at].test()?, travel_m, test.mean_diameter_m);
             }
         }
         self.do_tests(joint, &bench, workers)
