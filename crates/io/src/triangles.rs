@@ -190,6 +190,13 @@ pub fn is_named_so(path: &Path) -> bool {
     ENDINGS.contains(&ending(path).as_str())
 }
 
+/// The refusal, with advice, of a file with a name of another format of shapes. None: it has none,
+/// or that of a body.
+pub(crate) fn refusal_by_name(path: &Path) -> Option<Diagnostic> {
+    let ending = ending(path);
+    other_formats::refusal(b"", &ending).filter(|_| ending != "vtp")
+}
+
 /// Whether the name is that of a file that has a unit of its own.
 pub fn has_unit_by_name(path: &Path) -> bool {
     ending(path) == "3mf"

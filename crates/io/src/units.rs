@@ -356,6 +356,8 @@ pub fn significant(value: f64, digits: usize) -> String {
 pub fn show_quantity(value: f64, unit: &str) -> String {
     let size = value.abs();
     let (factor, unit) = match unit {
+        "m" if (1e-10..0.99995e-6).contains(&size) => (1e9, "nm"),
+        "m" if size > 0.0 && size < 1e-10 => (1.0, "m"),
         "m" if size < 1.0 => (1e3, "mm"),
         "m2" if size < 1.0 => (1e6, "mm2"),
         "m/s" if size < 1.0 => (1e3, "mm/s"),

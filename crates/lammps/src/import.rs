@@ -79,7 +79,7 @@ struct Moment<'a> {
 pub fn import(folder: &Path, results: &Path, existing: Existing) -> Result<Came> {
     each_moment(folder, &mut |_| Ok(()))?;
     let target = ResultsFolder::create(results, existing)?;
-    let mut files = FrameFiles::create(&target, WallFiles::None);
+    let mut files = FrameFiles::create(&target, WallFiles::default());
     let came = each_moment(folder, &mut |moment| append(moment, &mut files))?;
     write_summary(&target, &read_manifest(folder)?, &came)?;
     Ok(came)

@@ -8,6 +8,7 @@
 
 mod folder;
 mod home;
+mod load_cells;
 pub mod picture;
 mod sections;
 mod view;

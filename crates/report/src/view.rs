@@ -20,6 +20,7 @@ use choose::{Chosen, choose};
 use encode::encoded;
 
 use crate::home::Home;
+use crate::load_cells::LoadCells;
 use tracks::{Ranges, Tracks};
 
 pub(crate) use choose::ChosenFrame;
@@ -34,6 +35,9 @@ const PROGRAM: &str = include_str!("view/viewer.js");
 const STYLE: &str = include_str!("view/viewer.css");
 /// Number of colours of a scale, from which those between are mixed.
 const COLOURS: usize = 17;
+
+/// Most triangles of walls with loads that a frame shows.
+const MOST_LOADS: usize = 50_000;
 
 /// What the view needs from the folder of a run besides its frames.
 pub(crate) struct Subject<'a> {
@@ -57,6 +61,7 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
         if let Some(walls) = walls::read(frame)? {
             ranges.include_walls(&walls.points_m);
         }
+        ranges.include_loads(&loads_of(frame)?);
     }
     let Some(scales) = ranges.scales() else {
         return Ok(None);
@@ -69,6 +74,7 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
         pieces.refuse_unknown(&spheres, &frame.path)?;
         tracks.push(&spheres, &scales);
         tracks.push_walls(walls::read(frame)?.as_ref(), &scales);
+        tracks.push_loads(&loads_of(frame)?, &scales);
         if names.bodies.is_empty() {
             names.bodies.clone_from(&spheres.body_names);
         }
@@ -80,6 +86,13 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
     let data = encoded(tracks.all())
         .map_err(|error| dem_io::Diagnostic::failed("report.html", error.to_string(), ""))?;
     Ok(Some(markup(&head.to_string(), &data, &chosen)))
+}
+
+/// The loads of the walls of a frame, unless there are too many for a page.
+fn loads_of(frame: &ChosenFrame) -> Result<LoadCells> {
+    let loads = walls::read_loads(frame)?;
+    let few = loads.filter(|loads| loads.triangles_m.len() <= MOST_LOADS);
+    Ok(few.unwrap_or_default())
 }
 
 /// Where a run with this first frame takes place.
@@ -137,6 +150,7 @@ fn head(
         "body_colours": bodies.collect::<Vec<_>>(),
         "body_names": names.bodies,
         "highest": scales.highest_texts(),
+        "loads": scales.loads(),
         "tracks": tracks.all().collect::<Vec<_>>(),
     })
 }
@@ -167,13 +181,17 @@ fn markup(head: &str, data: &str, chosen: &Chosen) -> Markup {
                 }
                 div class="choices" {
                     label { "Colour " select class="mode" {} }
-                    span class="legend" hidden[true] {
+                    span class="mode-legend legend" hidden[true] {
                         span class="low" {} span class="ramp" {} span class="high" {}
                     }
                     span class="bodies" hidden[true] {}
                     span class="pieces" hidden[true] { "each fragment has its own colour" }
                     @for name in ["spheres", "bonds", "walls"] {
                         label { input class=(name) type="checkbox"; " " (name) }
+                    }
+                    label class="loads-choice" hidden[true] { "Loads of walls " select class="loads" {} }
+                    span class="loads-legend legend" hidden[true] {
+                        span class="low" { "0" } span class="ramp" {} span class="high" {}
                     }
                     label { "Cut " select class="axis" {
                         option value="" { "none" }

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use dem_physics::contact::patch_book::PatchBook;
+use dem_physics::geometry::patches::Patch;
 use dem_results::{
     Existing, Frame, FrameFiles, NamedArray, ResultsFolder, Values, WallFiles, WallFrame,
-    WallTriangles,
+    WallPatch, WallTriangles,
 };
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -29,13 +31,46 @@ impl Moment {
     pub(crate) fn is_broken(self, bond: usize) -> bool {
         bond % 4 == 3 && self.time_s > 0.5
     }
+
+    /// Two patches of the floor, of 0.5 m2 each. After the start the first is hit with 1 J and
+    /// worn by 1 um in each second; nothing touches the second.
+    fn loads(self) -> Vec<WallPatch> {
+        let patch = |first: f64, book, wear_m3| WallPatch {
+            wall: 0,
+            patch: Patch {
+                centre_m: [first + 0.5, 0.25, self.time_s / 8.0],
+                normal: [0.0, 0.0, 1.0],
+                area_m2: 0.5,
+                corners_m: [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 0.5]]
+                    .map(|[x, y]| [first + x, y, self.time_s / 8.0])
+                    .to_vec(),
+            },
+            book,
+            wear_m3,
+        };
+        let hit = PatchBook {
+            impact_j: self.time_s,
+            ..PatchBook::default()
+        };
+        vec![
+            patch(0.0, hit, 0.5e-6 * self.time_s),
+            patch(1.0, PatchBook::default(), 0.0),
+        ]
+    }
 }
 
 /// Writes the frames into a new folder.
 pub(crate) fn folder_with(moments: &[Moment]) -> TempDir {
     let place = tempfile::tempdir().unwrap();
     let folder = ResultsFolder::create(&place.path().join("out"), Existing::Refuse).unwrap();
-    let mut files = FrameFiles::create(&folder, WallFiles::EachFrame);
+    let mut files = FrameFiles::create(
+        &folder,
+        WallFiles {
+            each_frame: true,
+            fixed: false,
+            loads: true,
+        },
+    );
     for moment in moments {
         append(&mut files, *moment);
     }
@@ -63,6 +98,7 @@ fn append(files: &mut FrameFiles, moment: Moment) {
         forces_n: vec![[0.0; 3]],
         triangles: floor,
         velocities_m_s: vec![[0.0; 3]],
+        loads: moment.loads(),
     };
     let frame = Frame {
         time_s: moment.time_s,

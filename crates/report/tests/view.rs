@@ -112,6 +112,35 @@ fn walls_are_where_they_were_and_bodies_have_names() {
 }
 
 #[test]
+fn loads_of_walls_are_where_the_walls_are_and_grow() {
+    let folder = folder_with(&MOMENTS);
+    let view = Read3d::of(&page_of(&folder, &summary()));
+    let loads = &view.head["loads"];
+    assert_eq!(
+        loads,
+        &serde_json::json!([
+            { "track": "wear_depth", "name": "wear depth", "highest": "0.002 mm" },
+            { "track": "impact", "name": "impact energy over area", "highest": "4 J/m2" },
+        ])
+    );
+    let unit_m = view.head["resolution_m"].as_f64().unwrap();
+    for (frame, moment) in MOMENTS.iter().enumerate() {
+        // A square of two triangles; before it is hit it is left out, as is the other patch.
+        let triangles = if moment.time_s > 0.0 { 2 } else { 0 };
+        let level = (255.0 * moment.time_s / 2.0).round() as i64;
+        for track in ["wear_depth", "impact"] {
+            assert_eq!(view.tracks[track][frame], vec![level; triangles]);
+        }
+        let heights = &view.tracks["load_z"][frame];
+        assert_eq!(heights.len(), 3 * triangles);
+        for height in heights {
+            let height_m = view.head["origin_m"][2].as_f64().unwrap() + unit_m * *height as f64;
+            assert!((height_m - moment.time_s / 8.0).abs() <= 0.51 * unit_m);
+        }
+    }
+}
+
+#[test]
 fn without_frames_there_is_no_view() {
     for moments in [
         &[][..],

@@ -8,7 +8,8 @@
 use std::io::{self, Write};
 
 use super::folder::names;
-use super::folder::{ResultsFolder, fixed_walls_name, frame_name, walls_name};
+use super::folder::{ResultsFolder, fixed_walls_name, frame_name, loads_name, walls_name};
+use super::wall_loads::write_frame_loads;
 use super::walls::{WallFrame, WallTriangles, write_fixed_walls, write_walls};
 use dem_io::body::stored_frame::{BODY_NAMES, TIME};
 use dem_io::diagnostic::{Diagnostic, Result};
@@ -74,14 +75,13 @@ pub fn write_frame(frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
 
 /// The files of walls next to each frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum WallFiles {
-    /// None: the scene has no walls.
-    #[default]
-    None,
+pub struct WallFiles {
     /// One with each frame.
-    EachFrame,
-    /// The same, and one for all with large walls that never move.
-    EachFrameAndFixed,
+    pub each_frame: bool,
+    /// One for all with large walls that never move.
+    pub fixed: bool,
+    /// One with each frame of what contacts have done to patches of walls.
+    pub loads: bool,
 }
 
 /// The frames of a run so far.
@@ -114,7 +114,7 @@ impl FrameFiles {
             walls,
             times_s,
         };
-        let mut files = (0..frames.times_s.len()).flat_map(|number| frames.files_of(number));
+        let mut files = frames.files().into_iter();
         if let Some(name) = files.find(|name| !folder.path().join(name).is_file()) {
             return Err(Diagnostic::input(
                 folder.path().join(name).display().to_string(),
@@ -126,7 +126,7 @@ impl FrameFiles {
             // A run without frames has no index.
             folder.remove_frames_index()?;
         } else {
-            frames.write_index()?;
+            frames.write_indices()?;
         }
         folder.remove_frames_from(frames.times_s.len())?;
         Ok(frames)
@@ -143,20 +143,24 @@ impl FrameFiles {
         frame.check()?;
         self.folder.make_frames_folder()?;
         let number = self.times_s.len();
-        let has_fixed = self.walls == WallFiles::EachFrameAndFixed;
-        if has_fixed && number == 0 {
+        if self.walls.fixed && number == 0 {
             write_file(&self.folder.fixed_walls(), |out| {
                 write_fixed_walls(fixed, out)
             })?;
         }
-        if self.walls != WallFiles::None {
+        if self.walls.each_frame {
             write_file(&self.folder.walls(number), |out| {
-                write_walls(walls, frame.time_s, has_fixed, out)
+                write_walls(walls, frame.time_s, self.walls.fixed, out)
+            })?;
+        }
+        if self.walls.loads {
+            write_file(&self.folder.file(&loads_name(number)), |out| {
+                write_frame_loads(out, &walls.names, &walls.loads, frame.time_s)
             })?;
         }
         write_file(&self.folder.frame(number), |out| write_frame(frame, out))?;
         self.times_s.push(frame.time_s);
-        self.write_index()
+        self.write_indices()
     }
 
     /// Times of the frames, s, stored in a checkpoint for [`FrameFiles::continue_at`].
@@ -164,27 +168,43 @@ impl FrameFiles {
         &self.times_s
     }
 
-    /// Names in the folder of the files of frame `number`, in the order of their parts.
-    pub fn files_of(&self, number: usize) -> Vec<String> {
+    /// Names in the folder of the files of frame `number` but the loads of walls, in the order of
+    /// their parts.
+    fn files_of(&self, number: usize) -> Vec<String> {
         let mut files = vec![frame_name(number)];
-        if self.walls != WallFiles::None {
-            files.push(walls_name(number));
-        }
-        if self.walls == WallFiles::EachFrameAndFixed {
-            files.push(fixed_walls_name());
+        files.extend(self.walls.each_frame.then(|| walls_name(number)));
+        files.extend(self.walls.fixed.then(fixed_walls_name));
+        files
+    }
+
+    /// Names in the folder of all files of the frames, with the loads of walls.
+    pub fn files(&self) -> Vec<String> {
+        let numbers = 0..self.times_s.len();
+        let mut files: Vec<String> = numbers.clone().flat_map(|at| self.files_of(at)).collect();
+        if self.walls.loads {
+            files.extend(numbers.map(loads_name));
         }
         files
     }
 
-    fn write_index(&self) -> Result<()> {
-        write_file(&self.folder.file(names::INDEX), |out| {
+    fn write_indices(&self) -> Result<()> {
+        self.write_index(names::INDEX, |number| self.files_of(number))?;
+        match self.walls.loads {
+            true => self.write_index(names::WALL_LOAD_INDEX, |number| vec![loads_name(number)]),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes a list of these files of each frame.
+    fn write_index(&self, name: &str, files_of: impl Fn(usize) -> Vec<String>) -> Result<()> {
+        write_file(&self.folder.file(name), |out| {
             writeln!(
                 out,
                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>"
             )?;
             for (number, time_s) in self.times_s.iter().enumerate() {
                 let time = exact(*time_s);
-                for (part, file) in self.files_of(number).iter().enumerate() {
+                for (part, file) in files_of(number).iter().enumerate() {
                     writeln!(
                         out,
                         "    <DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>"

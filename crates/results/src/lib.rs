@@ -8,6 +8,7 @@ pub mod arrays;
 pub mod checkpoint;
 pub mod columns;
 pub(crate) mod discharge;
+mod discharged;
 pub(crate) mod events;
 pub(crate) mod flows;
 pub mod folder;
@@ -24,6 +25,7 @@ pub(crate) mod walls;
 
 pub use arrays::{Array, Arrays, read_all_arrays, read_arrays};
 pub use discharge::{DischargeRow, DistributionRow};
+pub use discharged::{SievedPieces, discharged};
 pub use events::{Event, event_lines, read_strengthened};
 pub use flows::{FlowRow, MixingRow};
 pub use folder::{Existing, ResultsFolder};

@@ -1,14 +1,16 @@
 //! What contacts have done to the patches of walls: `wall_loads.csv`, a row for each patch, and
-//! `wall_loads.vtp`, the patches with the same columns for ParaView. Walls are where they stood at
-//! the start.
+//! `wall_loads.vtp`, the patches with the same columns for ParaView, where the walls stood at the
+//! start; `frames/loads_000123.vtp`, some of the columns at the time of a frame, where the walls
+//! stand then.
 
 use std::io::{self, Write};
 use std::path::Path;
 
+use dem_io::body::stored_frame::TIME;
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
 use dem_io::text::exact;
-use dem_io::vtk::{Cells, NamedArray, PolyData, Values, write_texts};
+use dem_io::vtk::{Cells, NamedArray, PolyData, Values, write_number, write_texts};
 use dem_physics::contact::patch_book::PatchBook;
 use dem_physics::geometry::patches::Patch;
 
@@ -20,9 +22,9 @@ use dem_io::body::stored_walls::{WALL, WALL_NAMES};
 pub struct WallPatch {
     /// Number of its wall among the names.
     pub wall: u32,
-    /// In space, where the wall stood at the start.
+    /// In space.
     pub patch: Patch,
-    /// Its sums; impulses along axes in space of the wall at the start.
+    /// Its sums; impulses along axes in space.
     pub book: PatchBook,
     /// Volume worn off, m3.
     pub wear_m3: f64,
@@ -55,6 +57,16 @@ const QUANTITIES: [Quantity; 18] = [
     ("wear_depth_m", |one| one.wear_m3 / one.patch.area_m2),
 ];
 
+/// Columns beside a frame.
+const FRAME_COLUMNS: [&str; 6] = [
+    "area_m2",
+    "normal_impulse_n_s",
+    "impact_j",
+    "friction_j",
+    "damping_j",
+    "wear_depth_m",
+];
+
 /// Writes the table of the patches of walls with these names.
 ///
 /// # Errors
@@ -80,10 +92,34 @@ pub fn write_wall_loads(path: &Path, names: &[String], patches: &[WallPatch]) ->
 /// # Errors
 /// The file cannot be written.
 pub fn write_wall_load_cells(path: &Path, names: &[String], patches: &[WallPatch]) -> Result<()> {
-    write_file(path, |out| write_cells(out, names, patches))
+    write_file(path, |out| {
+        write_cells(out, patches, &QUANTITIES, |out| {
+            write_texts(out, WALL_NAMES, names)
+        })
+    })
 }
 
-fn write_cells(out: &mut dyn Write, names: &[String], patches: &[WallPatch]) -> io::Result<()> {
+/// Writes the columns of [`FRAME_COLUMNS`] of the patches at this time, s.
+pub(crate) fn write_frame_loads(
+    out: &mut dyn Write,
+    names: &[String],
+    patches: &[WallPatch],
+    time_s: f64,
+) -> io::Result<()> {
+    let mut some = QUANTITIES.to_vec();
+    some.retain(|(name, _)| FRAME_COLUMNS.contains(name));
+    write_cells(out, patches, &some, |out| {
+        write_number(out, "Float64", TIME, Some(exact(time_s)))?;
+        write_texts(out, WALL_NAMES, names)
+    })
+}
+
+fn write_cells(
+    out: &mut dyn Write,
+    patches: &[WallPatch],
+    quantities: &[Quantity],
+    fields: impl Fn(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     let mut points_m: Vec<[f64; 3]> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     let mut patch_of: Vec<usize> = Vec::new();
@@ -95,15 +131,16 @@ fn write_cells(out: &mut dyn Write, names: &[String], patches: &[WallPatch]) -> 
         patch_of.resize(triangles.len(), number);
     }
     let wall = |i: usize| patches[patch_of[i]].wall;
-    let values = QUANTITIES.map(|(_, value)| {
+    let values = quantities.iter().map(|(_, value)| {
         let patch_of = &patch_of;
         move |i: usize| value(&patches[patch_of[i]])
     });
+    let values: Vec<_> = values.collect();
     let mut cell_data = vec![NamedArray {
         name: WALL,
         values: Values::Counts(&wall),
     }];
-    for ((name, _), value) in QUANTITIES.iter().zip(&values) {
+    for ((name, _), value) in quantities.iter().zip(&values) {
         let values = Values::Scalars(value);
         cell_data.push(NamedArray { name, values });
     }
@@ -114,5 +151,5 @@ fn write_cells(out: &mut dyn Write, names: &[String], patches: &[WallPatch]) -> 
         point_data: &[],
         cell_data: &cell_data,
     }
-    .write(out, |out| write_texts(out, WALL_NAMES, names))
+    .write(out, fields)
 }

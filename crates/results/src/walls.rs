@@ -8,6 +8,8 @@
 
 use std::io::{self, Write};
 
+use super::wall_loads::WallPatch;
+
 use dem_io::body::stored_walls::{
     FIXED_WALLS, FIXED_WALLS_FILE, FORCE, VELOCITY, WALL, WALL_FORCES, WALL_NAMES,
 };
@@ -57,6 +59,8 @@ pub struct WallFrame {
     pub triangles: WallTriangles,
     /// Velocity of the surface at the centre of each triangle, m/s. Shape triangles x 3.
     pub velocities_m_s: Vec<[f64; 3]>,
+    /// What contacts have done so far to the patches of walls with loads, where they stand now.
+    pub loads: Vec<WallPatch>,
 }
 
 /// Writes the walls of a frame as .vtp. `has_fixed`: others are in `walls_fixed.vtp`.

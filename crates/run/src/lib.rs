@@ -23,6 +23,7 @@ pub mod snapshot;
 pub mod statics;
 mod sums;
 mod taken_in;
+mod wall_patches;
 
 use dem_io::Result;
 use dem_scene::{Integrator, Scene};

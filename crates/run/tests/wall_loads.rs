@@ -164,6 +164,22 @@ fn the_books_of_triangles_that_turn_close() {
     assert_eq!((patches(&state).len(), touched(&state).len()), (12, 2));
 }
 
+#[test]
+fn the_books_of_a_wet_wall_close() {
+    let dry = "friction = 0.8 }";
+    let liquid = "{ surface_tension = 0.073, contact_angle = 0.3, volume = 1e-12 }";
+    let wet = format!("friction = 0.8, liquid_bridge = {liquid} }}");
+    let text = falling(&format!("{BOX}{PATCH}"), "");
+    assert!(text.contains(dry), "{text}");
+    let text = text.replace(dry, &wet);
+    let state = follow(&text, 0.01);
+    assert!(
+        state
+            .bridges
+            .is_some_and(|bridges| !bridges.walls.is_empty())
+    );
+}
+
 /// Bodies that sleep go on pressing, and the patches of a belt under a body that rides on it change.
 #[test]
 fn the_books_close_while_bodies_sleep() {

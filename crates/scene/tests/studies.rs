@@ -7,7 +7,7 @@ mod searches;
 use std::path::Path;
 
 use dem_scene::study::{
-    Combine, MeasureOf, Reference, Study, reference_values, rewritten, scene_with,
+    Combine, DischargeFigure, MeasureOf, Reference, Study, reference_values, rewritten, scene_with,
     settle_references, study_from_text,
 };
 
@@ -199,6 +199,24 @@ fn measures_without_a_reference_have_responses() {
 }
 
 #[test]
+fn figures_of_what_left_are_read() {
+    let study = study(
+        "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.a]\ndischarge = \"mass-of-largest\"\n\
+         [measures.b]\ndischarge = \"passing\"\nsieve = \"20 mm\"\noutlet = \"product\"\n",
+    );
+    let of: Vec<&MeasureOf> = study.measures.iter().map(|one| &one.of).collect();
+    let product = Some("product".to_owned());
+    assert_eq!(
+        of,
+        [
+            &MeasureOf::Discharge(DischargeFigure::MassOfLargest, None),
+            &MeasureOf::Discharge(DischargeFigure::Passing(0.02), product),
+        ]
+    );
+    assert_eq!(study.measures[1].reference, Reference::None);
+}
+
+#[test]
 fn areas_have_sizes() {
     let study = study(
         "[vary]\n\"test.area\" = [\"9 cm2\", \"400 mm2\", \"1e-4 m2\"]\n[measures.tip]\nreference = \"richardson\"\n",
@@ -299,6 +317,18 @@ fn what_is_no_study() {
         (
             "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.e]\nbalance = \"energy\"\nmeasure = \"tip\"\n",
             "cannot be combined with",
+        ),
+        (
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.a]\ndischarge = \"passing\"\n",
+            "measures.a.discharge is \"passing\", but there is no sieve beside it; add sieve = \"20 mm\"",
+        ),
+        (
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.a]\ndischarge = \"d50\"\nsieve = \"2 mm\"\n",
+            "needs no sieve, which is beside it; remove sieve",
+        ),
+        (
+            "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.a]\nrun_result = \"d50\"\noutlet = \"end\"\n",
+            "measures.a.outlet is given without discharge, to which it belongs",
         ),
         (
             "[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n[page]\nseries = \"x\"\n",

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use dem_results::Summary;
-use dem_scene::study::{MeasureOf, RUN_RESULTS, Reference, RunTime, Study};
+use dem_results::folder::names::DISCHARGE;
+use dem_results::{SievedPieces, Summary, discharged};
+use dem_scene::study::{DischargeFigure, MeasureOf, RUN_RESULTS, Reference, RunTime, Study};
 
 use super::curves::{curve, largest_n};
 use super::jobs::Job;
@@ -110,6 +111,13 @@ fn reading(summary: &Summary, results: &Path, of: &MeasureOf) -> Result<Reading,
                 ..plain(value)
             });
         }
+        MeasureOf::Discharge(figure, outlet) => {
+            let value = discharge(summary, results, *figure, outlet.as_deref())?;
+            return Ok(Reading {
+                unit: figure.unit().to_owned(),
+                ..plain(value)
+            });
+        }
         MeasureOf::Masses(pieces) => {
             let masses_kg = masses_kg(*pieces, results)?;
             let count = masses_kg.len() as f64;
@@ -146,4 +154,32 @@ fn reading(summary: &Summary, results: &Path, of: &MeasureOf) -> Result<Reading,
         closed_form,
         ..plain(value)
     })
+}
+
+/// A figure of what left through the outlet of this name, or through all of them.
+fn discharge(
+    summary: &Summary,
+    results: &Path,
+    figure: DischargeFigure,
+    outlet: Option<&str>,
+) -> Result<f64, String> {
+    let csv = fs::read_to_string(results.join(DISCHARGE)).unwrap_or_default();
+    let mut outlets = discharged(&csv).ok_or("it has no table of what left")?;
+    let pieces = match outlet {
+        Some(name) => outlets.remove(name).unwrap_or_default(),
+        None => {
+            let fines_kg = summary.population.as_ref().map_or(0.0, |p| p.fines_kg);
+            let fines = (fines_kg > 0.0).then_some([0.0, fines_kg]);
+            let all = outlets.into_values().flat_map(SievedPieces::into_pieces);
+            SievedPieces::new(all.chain(fines).collect())
+        }
+    };
+    let found = match figure {
+        DischargeFigure::Mass => Some(pieces.mass_kg()),
+        DischargeFigure::MassOfLargest => pieces.largest_kg(),
+        DischargeFigure::Size(fraction) => pieces.size_m(fraction),
+        DischargeFigure::Passing(opening_m) => pieces.passing(opening_m),
+    };
+    let name = outlet.map_or_else(String::new, |name| format!(" '{name}'"));
+    found.ok_or_else(|| format!("nothing left through an outlet{name}"))
 }

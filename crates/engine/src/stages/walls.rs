@@ -5,7 +5,7 @@ mod driven;
 pub mod joints;
 mod meeting;
 mod motion;
-mod patches;
+pub(super) mod patches;
 
 use nalgebra::Vector3;
 

@@ -14,7 +14,7 @@ use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::input_file::{BUFFER_BYTES, explain_read, open_input};
 use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
-use crate::triangles::is_named_so;
+use crate::triangles::{is_named_so, refusal_by_name};
 
 /// The form in which a body is stored, with the names of its files.
 enum Storage {
@@ -287,12 +287,15 @@ pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     }
 }
 
-/// Refuses a file of triangles where a body is read.
+/// Refuses a shape where a body is read.
 fn refuse_shape(path: &Path) -> Result<()> {
+    let name = path.display().to_string();
+    if let Some(refusal) = refusal_by_name(path) {
+        return Err(refusal.within(&name));
+    }
     if !is_named_so(path) {
         return Ok(());
     }
-    let name = path.display().to_string();
     let body = path.with_extension("vtp");
     let remedy = format!(
         "fill it first: dem-pack {name} --diameter 2mm..3mm -o {}",

@@ -31,6 +31,11 @@ fn a_shape_is_no_body_yet() {
         said,
         format!("a b/cake.STL: this is a shape, not a body; {fill}")
     );
+    let said = read_body(Path::new("part.STEP")).unwrap_err().to_string();
+    assert_eq!(
+        said,
+        "part.STEP: a file of the format STEP, which has no triangles; export it as STL or 3MF from the program that made it, or from FreeCAD"
+    );
     let said = write_body(&triangle(), Path::new("cake.stl")).unwrap_err();
     assert!(
         said.problem.contains("'.stl' is not the ending of a body"),

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use dem_io::units::{show_length, show_quantity, significant};
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Factor, Scene, WallMotion};
+use nalgebra::Vector3;
 
 use dem_engine::state::loads::factor_at;
 use dem_engine::state::walls::Wall;
@@ -35,6 +36,23 @@ fn frequency_hz(motion: &WallMotion) -> Option<f64> {
         WallMotion::Gyration(gyration) => Some(gyration.frequency_hz),
         _ => None,
     }
+}
+
+/// Turns of a wall that spins in one place, Hz. None: it does not.
+fn turns_hz(motion: &WallMotion) -> Option<f64> {
+    match motion {
+        WallMotion::Velocity {
+            velocity_m_s: [0.0, 0.0, 0.0],
+            spin_rad_s,
+            ..
+        } => Some(Vector3::from(*spin_rad_s).norm() / TAU).filter(|hz| *hz > 0.0),
+        _ => None,
+    }
+}
+
+/// Rate at which a wall takes the same places again, Hz. None: it does not.
+fn cycle_hz(motion: &WallMotion) -> Option<f64> {
+    frequency_hz(motion).or_else(|| turns_hz(motion))
 }
 
 /// Largest step that follows a motion, s; infinite if it does not come back.
@@ -94,7 +112,7 @@ fn moments_s(motion: &WallMotion) -> Vec<f64> {
         } => phase_rad / TAU,
         _ => 0.0,
     };
-    let Some(frequency_hz) = frequency_hz(motion) else {
+    let Some(frequency_hz) = cycle_hz(motion) else {
         return Vec::new();
     };
     let part = |k: usize| k as f64 / MOMENTS as f64;
@@ -117,6 +135,10 @@ fn frame_at(wall: &Wall, [now_s, time_s]: [f64; 2]) -> Frame {
                 position_m: [0, 1, 2].map(|k| position_m[k] + gain * displacement_m[k]),
                 turned: turn(turned, angular_displacement_rad.map(|angle| gain * angle)),
             }
+        }
+        WallMotion::Velocity { spin_rad_s, .. } if turns_hz(&wall.model.motion).is_some() => {
+            let turned = turn(turned, spin_rad_s.map(|rate| rate * (time_s - now_s)));
+            Frame { position_m, turned }
         }
         WallMotion::Orbit(orbit) => {
             let Frame { position_m, turned } = middle(wall, now_s);
@@ -155,10 +177,12 @@ fn middle(wall: &Wall, now_s: f64) -> Frame {
 /// motion; of a plane, of its point. None: its way is not known in advance, or has no end. The wall
 /// is where it is at this time, s.
 pub fn stroke_m(wall: &Wall, now_s: f64) -> Option<f64> {
-    if matches!(&wall.model.motion, WallMotion::Gyration(gyration) if gyration.spin_rad_s != 0.0) {
+    let motion = &wall.model.motion;
+    let spins = matches!(motion, WallMotion::Gyration(gyration) if gyration.spin_rad_s != 0.0);
+    if spins || turns_hz(motion).is_some() {
         return None;
     }
-    let moments = moments_s(&wall.model.motion).into_iter();
+    let moments = moments_s(motion).into_iter();
     let frames: Vec<Frame> = moments.map(|at_s| frame_at(wall, [now_s, at_s])).collect();
     let mut stroke_m = frames.first().map(|_| 0.0)?;
     for point in points_of(&wall.model.shape) {
@@ -174,7 +198,7 @@ pub fn stroke_m(wall: &Wall, now_s: f64) -> Option<f64> {
 /// Pairs of walls that do not overlap at the start, in the middle of their circles or upright, but
 /// which their motion drives into each other, a sentence each. The walls are where they start.
 pub(crate) fn crossings(walls: &[Wall]) -> Vec<String> {
-    let comes_back = |wall: &Wall| frequency_hz(&wall.model.motion).is_some();
+    let comes_back = |wall: &Wall| cycle_hz(&wall.model.motion).is_some();
     if !walls.iter().any(comes_back) {
         return Vec::new();
     }
@@ -266,7 +290,7 @@ fn crossing(one: &Seen<'_>, other: &Seen<'_>) -> Option<String> {
         return None;
     }
     let motions = [&wall.model.motion, &beside.model.motion];
-    let [own_hz, other_hz] = motions.map(frequency_hz);
+    let [own_hz, other_hz] = motions.map(cycle_hz);
     let mut deepest_m: f64 = 0.0;
     for time_s in moments_s(motions[0]) {
         let frame = frame_at(wall, [0.0, time_s]);

@@ -1,19 +1,15 @@
 //! What each outlet has taken: mass, mass flow and sizes, from `discharge.csv`.
 
-use std::collections::BTreeMap;
-
 use dem_io::units::{show_quantity, significant};
 use dem_plots::{Column, Page, Table};
+use dem_results::{SievedPieces, discharged};
 
 /// Tonnes per hour of a kilogram per second.
 const T_H: f64 = 3.6;
 
-/// The pieces that an outlet has taken: size of the sieve that each passes, m, and mass, kg.
-type Taken = Vec<[f64; 2]>;
-
 /// Adds a row for each outlet that has taken pieces. `until_s`: length of the run.
 pub(crate) fn add_outlets(page: &mut Page, discharge_csv: &str, until_s: f64) {
-    let Some(outlets) = taken(discharge_csv).filter(|outlets| !outlets.is_empty()) else {
+    let Some(outlets) = discharged(discharge_csv).filter(|outlets| !outlets.is_empty()) else {
         return;
     };
     page.paragraph(
@@ -30,51 +26,22 @@ pub(crate) fn add_outlets(page: &mut Page, discharge_csv: &str, until_s: f64) {
     ];
     let mut columns = vec![Column::text("outlet")];
     columns.extend(names.map(Column::number));
-    let row = |(name, mut pieces): (String, Taken)| {
-        pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mass_kg: f64 = pieces.iter().map(|[_, mass_kg]| mass_kg).sum();
+    let row = |(name, pieces): (String, SievedPieces)| {
+        let mass_kg = pieces.mass_kg();
         let flow_kg_s = mass_kg / until_s;
         let mut cells = vec![
             name,
-            pieces.len().to_string(),
+            pieces.count().to_string(),
             show_quantity(mass_kg, "kg"),
             format!("{} kg/s", significant(flow_kg_s, 3)),
             format!("{} t/h", significant(T_H * flow_kg_s, 3)),
         ];
-        let sizes = [0.1, 0.5, 0.8].map(|fraction| size_m(&pieces, fraction * mass_kg));
-        cells.extend(sizes.map(|size_m| show_quantity(size_m, "m")));
+        let sizes_m = [0.1, 0.5, 0.8].map(|fraction| pieces.size_m(fraction));
+        cells.extend(sizes_m.map(|size_m| show_quantity(size_m.unwrap_or(f64::NAN), "m")));
         cells.into()
     };
     let rows = outlets.into_iter().map(row).collect();
     page.table(&Table { columns, rows });
-}
-
-/// The pieces of each outlet. None: the table has other columns.
-fn taken(csv: &str) -> Option<BTreeMap<String, Taken>> {
-    let mut lines = csv.lines();
-    let head: Vec<&str> = lines.next()?.split(',').collect();
-    let at = |name: &str| head.iter().position(|column| *column == name);
-    let [outlet, sieve, mass] = [at("outlet")?, at("sieve_m")?, at("mass_kg")?];
-    let mut outlets: BTreeMap<String, Taken> = BTreeMap::new();
-    for line in lines {
-        let cells: Vec<&str> = line.split(',').collect();
-        let number = |at: usize| cells.get(at)?.parse::<f64>().ok();
-        let piece = [number(sieve)?, number(mass)?];
-        let name = (*cells.get(outlet)?).to_owned();
-        outlets.entry(name).or_default().push(piece);
-    }
-    Some(outlets)
-}
-
-/// Size of the piece, from the smallest, with which the sum of the masses reaches this one, m.
-fn size_m(pieces: &[[f64; 2]], mass_kg: f64) -> f64 {
-    let mut sum_kg = 0.0;
-    let reaches = |[_, own_kg]: &&[f64; 2]| {
-        sum_kg += own_kg;
-        sum_kg >= mass_kg * (1.0 - 1e-12)
-    };
-    let found = pieces.iter().find(reaches).or(pieces.last());
-    found.map_or(f64::NAN, |[size_m, _]| *size_m)
 }
 
 #[cfg(test)]

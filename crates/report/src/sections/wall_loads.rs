@@ -81,7 +81,7 @@ fn table(summary: &Summary, spots: &[Spot], wears: bool) -> Table {
     let row = |(name, values): &&Spot| {
         let [x, y, z, impulse, impact, friction, depth] = *values;
         let total = summary.wall_loads.get(name);
-        let total = total.copied().unwrap_or_default();
+        let total = total.copied().unwrap_or_default().sums;
         let share = |part: f64, all: f64| match all > 0.0 {
             true => format!(" ({})", percent(part / all)),
             false => String::new(),
@@ -110,6 +110,7 @@ fn table(summary: &Summary, spots: &[Spot], wears: bool) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dem_physics::contact::patch_book::PatchBook;
     use dem_results::summary::WallLoadSummary;
 
     #[test]
@@ -117,8 +118,12 @@ mod tests {
         let csv = "wall,x_m,y_m,z_m,normal_impulse_n_s,impact_j,friction_j,wear_depth_m\n\
             liner,0.01,0,0,1,0.5,0,1e-6\nliner,0.02,0,0,3,0.25,2,3e-6\n";
         let spots = read(csv).unwrap_or_default();
-        let total = WallLoadSummary {
+        let sums = PatchBook {
             normal_impulse_n_s: 4.0,
+            ..PatchBook::default()
+        };
+        let total = WallLoadSummary {
+            sums,
             ..WallLoadSummary::default()
         };
         let summary = Summary {

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use super::encode::{Track, level};
 use super::spheres::{Bond, Spheres};
 use crate::home::Home;
+use crate::load_cells::{LoadCells, WallQuantity};
 
 /// Steps along the longest edge of the scene: floating point numbers of 32 bits hold them exactly.
 const STEPS: f64 = 16_777_215.0;
@@ -28,6 +29,7 @@ pub(crate) struct Ranges {
     mass_kg: f64,
     utilisation: f64,
     stress_pa: f64,
+    loads: [f64; 4],
 }
 
 /// What the whole numbers of the tracks mean.
@@ -43,6 +45,8 @@ pub(crate) struct Scales {
     mass_kg: f64,
     utilisation: f64,
     stress_pa: f64,
+    /// Of each [`WallQuantity`], in its unit.
+    loads: [f64; 4],
 }
 
 impl Ranges {
@@ -77,6 +81,15 @@ impl Ranges {
         }
     }
 
+    /// Extends the ranges to the loads of walls.
+    pub(crate) fn include_loads(&mut self, loads: &LoadCells) {
+        for values in &loads.values {
+            for (highest, value) in self.loads.iter_mut().zip(values) {
+                *highest = highest.max(*value);
+            }
+        }
+    }
+
     /// The scales of these ranges. None: there is nothing.
     pub(crate) fn scales(&self) -> Option<Scales> {
         let [low_m, high_m] = self.all_m?;
@@ -96,6 +109,7 @@ impl Ranges {
             mass_kg: or_one(self.mass_kg),
             utilisation: or_one(self.utilisation),
             stress_pa: or_one(self.stress_pa),
+            loads: self.loads,
         })
     }
 }
@@ -109,6 +123,17 @@ impl Scales {
             "utilisation": show_quantity(self.utilisation, ""),
             "stress": show_quantity(self.stress_pa, "Pa"),
         })
+    }
+
+    /// The loads of walls that are above 0 anywhere: track, name, and largest value.
+    pub(crate) fn loads(&self) -> Vec<Value> {
+        let quantities = WallQuantity::WORDS.iter().zip(self.loads);
+        let shown = quantities.filter(|(_, highest)| *highest > 0.0);
+        let shown = shown.map(|((track, quantity), highest)| {
+            let (name, unit) = quantity.label();
+            json!({ "track": track, "name": name, "highest": show_quantity(highest, unit) })
+        });
+        shown.collect()
     }
 
     fn steps(&self, place_m: [f64; 3]) -> [i32; 3] {
@@ -158,11 +183,13 @@ const TRACKS: [(&str, usize); 17] = [
     ("corner", 4),
 ];
 const OF_WALLS: [&str; 3] = ["wall_x", "wall_y", "wall_z"];
+const OF_LOADS: [&str; 3] = ["load_x", "load_y", "load_z"];
 
 impl Tracks {
     pub(crate) fn new() -> Self {
-        let of_walls = OF_WALLS.map(|name| (name, 4));
-        let all = TRACKS.into_iter().chain(of_walls);
+        let of_walls = OF_WALLS.into_iter().chain(OF_LOADS).map(|name| (name, 4));
+        let of_loads = WallQuantity::WORDS.map(|(name, _)| (name, 1));
+        let all = TRACKS.into_iter().chain(of_walls).chain(of_loads);
         Self {
             tracks: all
                 .map(|(name, bytes)| (name, Track::new(name, bytes)))
@@ -249,6 +276,20 @@ impl Tracks {
         }
         let corners = walls.triangles.as_flattened();
         self.put("corner", corners.iter().map(|at| *at as i32));
+    }
+
+    /// Appends the loads of the walls of a frame: three corners, and a level of each quantity, for
+    /// each triangle.
+    pub(crate) fn push_loads(&mut self, loads: &LoadCells, scales: &Scales) {
+        let corners = loads.triangles_m.as_flattened();
+        let places: Vec<[i32; 3]> = corners.iter().map(|at| scales.steps(*at)).collect();
+        for (k, name) in OF_LOADS.into_iter().enumerate() {
+            self.put(name, places.iter().map(|place| place[k]));
+        }
+        for (k, (name, _)) in WallQuantity::WORDS.into_iter().enumerate() {
+            let values = loads.values.iter();
+            self.put(name, values.map(|of| level(of[k], scales.loads[k], 255)));
+        }
     }
 
     fn put(&mut self, name: &str, values: impl IntoIterator<Item = i32>) {

@@ -172,6 +172,25 @@ void main() {
   pixel = vec4(shade(paint, normal.z < 0.0 ? -normal : normal, at), opacity);
 }`);
 
+const patches = program(COMMON + `
+in float x, y, z; in vec4 colour;
+out vec3 at, world; flat out vec3 c;
+void main() {
+  world = origin + resolution * vec3(x, y, z);
+  vec4 eye = view * vec4(world, 1.0);
+  at = eye.xyz;
+  c = colour.rgb;
+  gl_Position = projection * eye;
+}`, SHADE + `
+in vec3 at, world; flat in vec3 c;
+uniform vec4 cut;
+out vec4 pixel;
+void main() {
+  if (dot(cut.xyz, world) > cut.w) discard;
+  vec3 normal = normalize(cross(dFdx(at), dFdy(at)));
+  pixel = vec4(shade(c, normal.z < 0.0 ? -normal : normal, at), 1.0);
+}`);
+
 function program(vertex, fragment) {
   const made = gl.createProgram();
   for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
@@ -217,21 +236,24 @@ const corners = gl.createBuffer();
 
 // ---- One frame into the buffers ----
 
-const shown = { frame: -1, mode: "", spheres: 0, bonds: 0, corners: 0, triangles: null };
+const shown = { frame: -1, mode: "", loads: "", spheres: 0, bonds: 0, corners: 0, triangles: null, patch_corners: 0 };
 const choice = {
   frame: 0, mode: head.modes[0], spheres: true, bonds: false, walls: true, axis: "", cut: 0.5, playing: false,
+  loads: head.loads.length > 0 ? head.loads[0].track : "",
 };
 
 function load() {
-  if (shown.frame === choice.frame && shown.mode === choice.mode) return;
+  if (shown.frame === choice.frame && shown.mode === choice.mode && shown.loads === choice.loads) return;
   const k = shown.frame = choice.frame;
   shown.mode = choice.mode;
+  shown.loads = choice.loads;
   for (const axis of ["x", "y", "z"]) fill(spheres, axis, tracks[axis][k], 1, 1, gl.INT);
   fill(spheres, "radius", tracks.radius[k], 1, 1, gl.UNSIGNED_SHORT);
   shown.spheres = tracks.radius[k].length;
   fill(spheres, "colour", painted(shown.spheres, colour_of(choice.mode, k)), 4, 1, gl.UNSIGNED_BYTE, true);
   load_bonds(k);
   load_walls(k);
+  load_patches(k);
 }
 
 function painted(count, colour) {
@@ -270,6 +292,15 @@ function load_walls(k) {
   gl.bindVertexArray(surfaces.array);
   gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, corners);
   gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(shown.triangles), gl.STATIC_DRAW);
+}
+
+function load_patches(k) {
+  shown.patch_corners = choice.loads ? tracks.load_x[k].length : 0;
+  if (shown.patch_corners === 0) return;
+  for (const axis of ["x", "y", "z"]) fill(patches, axis, tracks["load_" + axis][k], 1, 0, gl.INT);
+  const levels = tracks[choice.loads][k], ramp = ramps.speed.colours;
+  const colours = painted(shown.patch_corners, i => ramp[levels[Math.floor(i / 3)]]);
+  fill(patches, "colour", colours, 4, 0, gl.UNSIGNED_BYTE, true);
 }
 
 // ---- Camera ----
@@ -345,10 +376,19 @@ function drawn() {
     use(tubes, set);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, ring.length / 3, shown.bonds);
   }
+  if (choice.walls && shown.patch_corners > 0) draw_patches(set);
   if (choice.walls && shown.corners > 0) draw_walls(set);
   find("time").textContent = head.time_texts[choice.frame];
   root.dataset.frame = choice.frame;
   root.dataset.state = "ready";
+}
+// In front of the walls that they are part of.
+function draw_patches(set) {
+  use(patches, set);
+  gl.enable(gl.POLYGON_OFFSET_FILL);
+  gl.polygonOffset(-1, -2);
+  gl.drawArrays(gl.TRIANGLES, 0, shown.patch_corners);
+  gl.disable(gl.POLYGON_OFFSET_FILL);
 }
 function draw_walls(set) {
   use(surfaces, set);
@@ -425,15 +465,19 @@ function play(is_on) {
   if (is_on) timer = setInterval(() => go((choice.frame + 1) % frames), Math.max(40, 6000 / frames));
 }
 function legend() {
-  const ramp = ramps[choice.mode];
   find("bodies").hidden = choice.mode !== "body";
   find("pieces").hidden = choice.mode !== "piece";
-  find("legend").hidden = !ramp;
+  show_scale(find("mode-legend"), ramps[choice.mode]);
+  const of_walls = head.loads.find(one => one.track === choice.loads);
+  show_scale(find("loads-legend"), of_walls && { colours: ramps.speed.colours, from: "0", to: of_walls.highest });
+}
+function show_scale(element, ramp) {
+  element.hidden = !ramp;
   if (!ramp) return;
   const stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map(level => `rgb(${ramp.colours[level].map(Math.round)})`);
-  find("ramp").style.background = `linear-gradient(90deg, ${stops})`;
-  find("low").textContent = ramp.from;
-  find("high").textContent = ramp.to;
+  element.querySelector(".ramp").style.background = `linear-gradient(90deg, ${stops})`;
+  element.querySelector(".low").textContent = ramp.from;
+  element.querySelector(".high").textContent = ramp.to;
 }
 head.body_names.forEach((name, at) => {
   const chip = document.createElement("i"), label = document.createElement("span");
@@ -443,6 +487,10 @@ head.body_names.forEach((name, at) => {
 });
 const names = { piece: "fragment", body: "body", speed: "speed", utilisation: "utilisation of bonds", stress: "stress of bonds", mass: "fragment mass" };
 for (const mode of head.modes) find("mode").add(new Option(names[mode], mode));
+for (const { name, track } of head.loads) find("loads").add(new Option(name, track));
+find("loads").add(new Option("none", ""));
+find("loads-choice").hidden = head.loads.length === 0;
+find("loads").addEventListener("change", event => { choice.loads = event.target.value; legend(); draw(); });
 find("slider").max = frames - 1;
 find("slider").addEventListener("input", event => { play(false); go(+event.target.value); });
 find("play").addEventListener("click", () => play(!choice.playing));

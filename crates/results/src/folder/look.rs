@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::disk::entries;
 use super::names::{
-    FRAMES, PICTURES, PLOTS, SCENE, SINGLE_FILES, frame_number, picture_number, walls_number,
+    FRAMES, PICTURES, PLOTS, SCENE, SINGLE_FILES, frame_number, number_in_frames, picture_number,
 };
 use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 use dem_io::diagnostic::{Diagnostic, Result};
@@ -17,9 +17,7 @@ use dem_io::write_target::is_same_file;
 /// folder.
 pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
     let is_ours = |part: &str, name: &str| match part {
-        FRAMES => {
-            frame_number(name).is_some() || walls_number(name).is_some() || name == FIXED_WALLS_FILE
-        }
+        FRAMES => number_in_frames(name).is_some() || name == FIXED_WALLS_FILE,
         PICTURES => picture_number(name).is_some(),
         PLOTS => name.ends_with(".svg"),
         _ => SINGLE_FILES.contains(&name) || name == SCENE,

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 
 pub(super) const FRAMES: &str = "frames";
+/// How the names of the loads of walls beside frames begin.
+const LOADS: &str = "loads_";
 pub(super) const PLOTS: &str = "plots";
 pub(super) const PICTURES: &str = "pictures";
 /// Some pictures side by side.
@@ -33,6 +35,8 @@ pub const MIXING: &str = "mixing.csv";
 pub const WALL_LOADS: &str = "wall_loads.csv";
 /// The same for ParaView.
 pub const WALL_LOAD_CELLS: &str = "wall_loads.vtp";
+/// The list of the loads of walls at the times of the frames, which ParaView opens.
+pub const WALL_LOAD_INDEX: &str = "wall_loads.pvd";
 /// Summary.
 pub const SUMMARY: &str = "summary.json";
 /// The page of the run.
@@ -52,7 +56,7 @@ pub const CHECKPOINT: &str = "checkpoint.dem";
 /// The data written at the end of a run, kept until all files are complete.
 pub const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 21] = [
+pub(super) const SINGLE_FILES: [&str; 22] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -64,6 +68,7 @@ pub(super) const SINGLE_FILES: [&str; 21] = [
     MIXING,
     WALL_LOADS,
     WALL_LOAD_CELLS,
+    WALL_LOAD_INDEX,
     SUMMARY,
     REPORT,
     TEST_CURVE,
@@ -97,6 +102,16 @@ pub(crate) fn walls_name(number: usize) -> String {
     format!("{FRAMES}/walls_{number:06}.vtp")
 }
 
+/// The name of the loads of walls at the time of a frame in the folder.
+pub(crate) fn loads_name(number: usize) -> String {
+    format!("{FRAMES}/{}", loads_file(number))
+}
+
+/// `loads_000123.vtp`: the loads of walls beside the frame of this number.
+pub fn loads_file(number: usize) -> String {
+    format!("{LOADS}{number:06}.vtp")
+}
+
 /// The name of the walls that never move in the folder.
 pub(crate) fn fixed_walls_name() -> String {
     format!("{FRAMES}/{FIXED_WALLS_FILE}")
@@ -107,9 +122,12 @@ pub(super) fn frame_number(name: &str) -> Option<usize> {
     number_of(name, "frame_", ".vtp", 6)
 }
 
-/// 123 of `walls_000123.vtp`.
-pub(super) fn walls_number(name: &str) -> Option<usize> {
-    number_of(name, "walls_", ".vtp", 6)
+/// 123 of `frame_000123.vtp`, and of the walls and loads beside it.
+pub(super) fn number_in_frames(name: &str) -> Option<usize> {
+    let parts = ["frame_", "walls_", LOADS];
+    parts
+        .iter()
+        .find_map(|part| number_of(name, part, ".vtp", 6))
 }
 
 /// 123 of `picture-00123.png`.

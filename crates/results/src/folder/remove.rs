@@ -6,7 +6,7 @@ use super::disk::{entries, refuse_unless_empty};
 use super::lock::LOCK;
 use super::names::{
     CHECKPOINT, ENDED, FILM, FILM_STRIP, FRAMES, INDEX, PICTURES, PLOTS, SCENE, SINGLE_FILES,
-    SUMMARY, frame_number, picture_number, walls_number,
+    SUMMARY, WALL_LOAD_INDEX, number_in_frames, picture_number,
 };
 use super::paths::ResultsFolder;
 use super::write::is_scene_as_run;
@@ -37,7 +37,9 @@ impl ResultsFolder {
     pub fn keep_tables(&self) -> Result<()> {
         // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
-        self.remove_files("", |name| [ENDED, INDEX, FILM, FILM_STRIP].contains(&name))?;
+        self.remove_files("", |name| {
+            [ENDED, INDEX, WALL_LOAD_INDEX, FILM, FILM_STRIP].contains(&name)
+        })?;
         self.remove_numbered_and_plots()?;
         for part in [FRAMES, PICTURES, PLOTS] {
             // One that holds other files stays.
@@ -46,13 +48,11 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// Removes frame `number` and all after it, with their walls; if it is the first, also the
+    /// Removes frame `number` and all after it, with their walls and loads; if it is the first, also the
     /// walls that never move.
     pub(crate) fn remove_frames_from(&self, number: usize) -> Result<()> {
         self.remove_files(FRAMES, |name| {
-            let is_later = |found: Option<usize>| found.is_some_and(|found| found >= number);
-            is_later(frame_number(name))
-                || is_later(walls_number(name))
+            number_in_frames(name).is_some_and(|found| found >= number)
                 || (number == 0 && name == FIXED_WALLS_FILE)
         })
     }
@@ -64,9 +64,9 @@ impl ResultsFolder {
         })
     }
 
-    /// Removes the list of all frames, if there is one.
+    /// Removes the lists of all frames and of the loads of walls, if they are there.
     pub(crate) fn remove_frames_index(&self) -> Result<()> {
-        self.remove_files("", |name| name == INDEX)
+        self.remove_files("", |name| [INDEX, WALL_LOAD_INDEX].contains(&name))
     }
 
     pub(super) fn remove_results(&self) -> Result<()> {

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use dem_physics::contact::patch_book::PatchBook;
 use serde::{Deserialize, Serialize};
 
 /// Number of bodies that are named; the others are counted.
@@ -140,20 +141,9 @@ pub struct WallLoadSummary {
     pub patches: usize,
     /// Those that have been touched.
     pub touched: usize,
-    /// Impulse on the wall, N s, along axes that turn with it, as at the start. Length 3.
-    pub impulse_n_s: [f64; 3],
-    /// Impulse along the normal into the wall, N s.
-    pub normal_impulse_n_s: f64,
-    /// Sum of the magnitudes of the impulses across the normal, N s.
-    pub tangential_impulse_n_s: f64,
-    /// Work of the normal force while overlaps grow, J.
-    pub impact_j: f64,
-    /// Energy lost to friction, J.
-    pub friction_j: f64,
-    /// Energy lost to damping of the contacts, J.
-    pub damping_j: f64,
-    /// Normal force times sliding distance, N m.
-    pub sliding_load_n_m: f64,
+    /// The sums; the impulse along axes that turn with the wall, as at the start.
+    #[serde(flatten)]
+    pub sums: PatchBook,
     /// Volume worn off, m3.
     pub wear_volume_m3: f64,
     /// Largest wear depth of a patch, m.

@@ -9,7 +9,11 @@ use dem_io::units::significant;
 use super::contents::Summary;
 use super::equilibrium::EquilibriumSummary;
 use super::measured::Measured;
+use super::parts::PopulationSummary;
 use super::sizes::{RESOLVED_DIAMETERS, SizeSummary};
+
+/// Most bodies of which each has a line with its sizes.
+const MOST_BODIES: usize = 4;
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -71,9 +75,19 @@ impl Summary {
         )
     }
 
+    /// Whether no body could break: none had bonds, and daughters replaced none.
+    fn is_rigid(&self) -> bool {
+        let ever_bonded = self.bonds > 0 || self.broken_bonds > 0 || self.largest_bond_strain > 0.0;
+        let replaced = |bodies: &PopulationSummary| {
+            bodies.replaced + bodies.replaced_by_daughters > 0 || bodies.fines_kg > 0.0
+        };
+        !ever_bonded && !self.population.as_ref().is_some_and(replaced)
+    }
+
     /// Broken, damaged and yielded bonds.
     pub(super) fn write_broken(&self, f: &mut impl Write) -> fmt::Result {
         let of_all = match self.population {
+            Some(_) if self.is_rigid() => return Ok(()),
             Some(_) => String::new(),
             None if self.bonds > 0 => format!(" of {}", self.bonds),
             None => return Ok(()),
@@ -111,7 +125,7 @@ impl Summary {
 
     /// Fragments and the largest of them.
     pub(super) fn write_fragments(&self, f: &mut impl Write) -> fmt::Result {
-        let Some(fragments) = &self.fragments else {
+        let Some(fragments) = self.fragments.as_ref().filter(|_| !self.is_rigid()) else {
             return Ok(());
         };
         let discharged = self.population.as_ref().map_or(0, |p| p.discharged);
@@ -322,7 +336,10 @@ impl Summary {
         if let Some(all) = sizes.all.get("both") {
             line("sizes", "", all)?;
         }
-        if sizes.bodies.len() > 1 {
+        if let Some(left) = sizes.all.get("discharged") {
+            line("", "   of what left", left)?;
+        }
+        if (2..=MOST_BODIES).contains(&sizes.bodies.len()) {
             for (name, body) in &sizes.bodies {
                 if let Some(both) = body.get("both") {
                     line("", &format!("   of {name}"), both)?;

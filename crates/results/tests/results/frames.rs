@@ -310,7 +310,7 @@ fn arrays_of_any_length_hold_every_value_in_order() {
 fn the_index_lists_every_frame_with_its_time() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    let mut frames = FrameFiles::create(&folder, WallFiles::None);
+    let mut frames = FrameFiles::create(&folder, WallFiles::default());
     assert!(contents(folder.path()).is_empty());
     for time_s in [0.0, 5e-3, 0.01] {
         append(&mut frames, time_s);
@@ -347,8 +347,8 @@ pub(super) fn written(folder: &ResultsFolder) -> Vec<(String, Vec<u8>)> {
 fn a_missing_frame_is_told_when_a_run_continues() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    append(&mut FrameFiles::create(&folder, WallFiles::None), 0.0);
-    let error = FrameFiles::continue_at(&folder, WallFiles::None, vec![0.0, 1.0]).unwrap_err();
+    append(&mut FrameFiles::create(&folder, WallFiles::default()), 0.0);
+    let error = FrameFiles::continue_at(&folder, WallFiles::default(), vec![0.0, 1.0]).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(error.place.ends_with("frame_000001.vtp"), "{error}");
 }
@@ -362,11 +362,11 @@ proptest! {
         let checkpoint = checkpoint.index(crash + 1);
         let [a, b] = [tempdir().unwrap(), tempdir().unwrap()];
         let [whole, resumed] = [results_in(&a), results_in(&b)];
-        let mut frames = FrameFiles::create(&whole, WallFiles::None);
+        let mut frames = FrameFiles::create(&whole, WallFiles::default());
         times.iter().for_each(|time| append(&mut frames, *time));
-        let mut frames = FrameFiles::create(&resumed, WallFiles::None);
+        let mut frames = FrameFiles::create(&resumed, WallFiles::default());
         times[..crash].iter().for_each(|time| append(&mut frames, *time));
-        let mut frames = FrameFiles::continue_at(&resumed, WallFiles::None, times[..checkpoint].to_vec()).unwrap();
+        let mut frames = FrameFiles::continue_at(&resumed, WallFiles::default(), times[..checkpoint].to_vec()).unwrap();
         prop_assert_eq!(written(&resumed).len(), if checkpoint == 0 { 0 } else { checkpoint + 1 });
         times[checkpoint..].iter().for_each(|time| append(&mut frames, *time));
         prop_assert_eq!(written(&resumed), written(&whole));

@@ -12,6 +12,16 @@ use tempfile::tempdir;
 use super::frames::{frame, written};
 use super::results_in;
 
+const EACH_FRAME: WallFiles = WallFiles {
+    each_frame: true,
+    fixed: false,
+    loads: false,
+};
+const FIXED: WallFiles = WallFiles {
+    fixed: true,
+    ..EACH_FRAME
+};
+
 /// A square of two triangles at this height, m, and a triangle above it.
 fn walls(height_m: f64) -> WallFrame {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| [x, y, height_m]);
@@ -24,6 +34,7 @@ fn walls(height_m: f64) -> WallFrame {
         forces_n: vec![[1.0 / 3.0, -2.0, 3.0e-7], [0.0, 0.0, height_m]],
         triangles,
         velocities_m_s: vec![[0.0; 3], [1.0, 2.0, 3.0], [-0.5, 0.0, 4.0]],
+        loads: Vec::new(),
     }
 }
 
@@ -48,7 +59,7 @@ fn read(folder: &ResultsFolder, number: usize) -> StoredWalls {
 fn walls_are_read_back_as_they_were() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    let mut frames = FrameFiles::create(&folder, WallFiles::EachFrame);
+    let mut frames = FrameFiles::create(&folder, EACH_FRAME);
     append(&mut frames, 0.25);
     let (found, written) = (read(&folder, 0), walls(0.25));
     assert_eq!(found.time_s, 0.25);
@@ -65,7 +76,7 @@ fn walls_are_read_back_as_they_were() {
 fn large_walls_that_never_move_are_written_once() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    let mut frames = FrameFiles::create(&folder, WallFiles::EachFrameAndFixed);
+    let mut frames = FrameFiles::create(&folder, FIXED);
     append(&mut frames, 0.25);
     append(&mut frames, 0.5);
     for (number, time_s) in [(0, 0.25), (1, 0.5)] {
@@ -80,7 +91,7 @@ fn large_walls_that_never_move_are_written_once() {
     let error = read_walls(&folder.walls(0)).unwrap_err();
     assert!(error.place.ends_with("walls_fixed.vtp"), "{error}");
     let times = frames.times_s().to_vec();
-    let error = FrameFiles::continue_at(&folder, WallFiles::EachFrameAndFixed, times).unwrap_err();
+    let error = FrameFiles::continue_at(&folder, FIXED, times).unwrap_err();
     assert!(error.place.ends_with("walls_fixed.vtp"), "{error}");
 }
 
@@ -88,7 +99,7 @@ fn large_walls_that_never_move_are_written_once() {
 fn the_index_lists_walls_as_parts_of_a_time() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    let mut frames = FrameFiles::create(&folder, WallFiles::EachFrameAndFixed);
+    let mut frames = FrameFiles::create(&folder, FIXED);
     append(&mut frames, 0.5);
     let index = fs::read_to_string(folder.file(names::INDEX)).unwrap();
     let parts: Vec<&str> = index
@@ -131,7 +142,7 @@ fn array<'a>(bytes: &'a [u8], name: &str) -> (&'a [u8], String) {
 fn arrays_of_walls_have_the_numbers_and_types_that_vtk_reads() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    append(&mut FrameFiles::create(&folder, WallFiles::EachFrame), 0.5);
+    append(&mut FrameFiles::create(&folder, EACH_FRAME), 0.5);
     let bytes = fs::read(folder.walls(0)).unwrap();
     let header = String::from_utf8_lossy(&bytes);
     assert!(header.contains(
@@ -173,7 +184,7 @@ fn arrays_of_walls_have_the_numbers_and_types_that_vtk_reads() {
 fn damaged_walls_are_refused() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    append(&mut FrameFiles::create(&folder, WallFiles::EachFrame), 0.5);
+    append(&mut FrameFiles::create(&folder, EACH_FRAME), 0.5);
     let path = folder.walls(0);
     let whole = fs::read(&path).unwrap();
     for length in 0..whole.len() {
@@ -198,7 +209,7 @@ proptest! {
 
     #[test]
     fn an_interrupted_run_leaves_the_same_walls(times in prop::collection::vec(0.0..1e3_f64, 0..6), crash in any::<prop::sample::Index>(), checkpoint in any::<prop::sample::Index>()) {
-        let files = WallFiles::EachFrameAndFixed;
+        let files = FIXED;
         let crash = crash.index(times.len() + 1);
         let checkpoint = checkpoint.index(crash + 1);
         let [a, b] = [tempdir().unwrap(), tempdir().unwrap()];

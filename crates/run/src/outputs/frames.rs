@@ -52,7 +52,7 @@ impl Output for Frames {
 
     fn save(&self) -> Result<Saved> {
         let times_s = self.files.times_s();
-        let files = (0..times_s.len()).flat_map(|number| self.files.files_of(number));
+        let files = self.files.files().into_iter();
         Saved::new(&times_s, files.map(|name| (name, None)).collect())
     }
 }

@@ -112,6 +112,14 @@ fn a_motion_through_another_wall_is_doubtful() {
     let other = "orbit = { axis = [0, 1, 0], towards = [-1, 0, 0], radius = 0.01, frequency = 50 }";
     let slower = ORBIT.replace("50", "30");
     let swing = "angular_displacement = { axis = [0, 1, 0], angle = 0.1 }\nfrequency = 2";
+    let [spin, back] = [
+        "angular_velocity = [0, 3, 0]",
+        "angular_velocity = [0, -3, 0]",
+    ];
+    let in_the_way = |x_m: f64, more: &str| {
+        let side = side(x_m, more).replace("0.02]", "-0.06]");
+        side.replace("0.04]", "0.06]")
+    };
     for (walls, deep) in [
         (vec![deck(ORBIT), floor(-0.009)], Some("1 mm")),
         (vec![deck(ORBIT), floor(-0.011)], None),
@@ -139,6 +147,11 @@ fn a_motion_through_another_wall_is_doubtful() {
             ],
             None,
         ),
+        (vec![rod(spin), in_the_way(0.95, "")], Some("50 mm")),
+        (vec![rod(spin), in_the_way(1.01, "")], None),
+        // They turn together.
+        (vec![rod(spin), in_the_way(0.95, spin)], None),
+        (vec![rod(spin), in_the_way(0.95, back)], Some("50")),
     ] {
         let walls: Vec<&str> = walls.iter().map(String::as_str).collect();
         let plan = planned(&scene("", &walls).replace(", }", " }"));

@@ -148,6 +148,25 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
                 );
                 return refuse(problem, "write fragment_masses = \"remaining\"".to_owned());
             }
+            MeasureOf::Discharge(_, outlet) => {
+                let known = scene.outlets.keys().map(String::as_str);
+                let scene = &scene.source;
+                match outlet {
+                    Some(of) if !known.clone().any(|name| name == of) => {
+                        let problem = format!(
+                            "measures.{name}.outlet: the scene {scene} has no outlet '{of}'"
+                        );
+                        return refuse(problem, suggestion(of, known));
+                    }
+                    None if known.count() == 0 => {
+                        let problem = format!(
+                            "measures.{name} is of what left, but the scene {scene} has no [outlets]"
+                        );
+                        return refuse(problem, "write a run_result".to_owned());
+                    }
+                    _ => None,
+                }
+            }
             MeasureOf::Curve if scene.test.is_none() => {
                 let problem = format!(
                     "measures.{name}.curve is that of a test, but the scene {} has no [test]",

@@ -345,6 +345,42 @@ pub enum MeasureOf {
     RunTime(RunTime),
     /// `run_result`: one of [`RUN_RESULTS`].
     RunResult(String),
+    /// `discharge`: a figure of what left through an outlet, or through all of them.
+    Discharge(DischargeFigure, Option<String>),
+}
+
+/// A figure of the pieces that left through outlets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DischargeFigure {
+    /// "mass": their mass, kg.
+    Mass,
+    /// "mass-of-largest": mass of the heaviest, kg.
+    MassOfLargest,
+    /// "d10", "d50", "d80": sieve size up to which this fraction of the mass is, m.
+    Size(f64),
+    /// "passing": fraction of the mass that passes a `sieve` with this opening, m.
+    Passing(f64),
+}
+
+impl DischargeFigure {
+    /// The words; "passing" stands for a sieve that is given beside it.
+    pub(super) const WORDS: [(&'static str, Self); 6] = [
+        ("mass", Self::Mass),
+        ("mass-of-largest", Self::MassOfLargest),
+        ("d10", Self::Size(0.1)),
+        ("d50", Self::Size(0.5)),
+        ("d80", Self::Size(0.8)),
+        ("passing", Self::Passing(f64::INFINITY)),
+    ];
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Mass | Self::MassOfLargest => "kg",
+            Self::Size(_) => "m",
+            Self::Passing(_) => "",
+        }
+    }
 }
 
 /// The pieces whose masses are compared.

@@ -1,7 +1,10 @@
 //! The keys of a study.
 
-use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RUN_RESULTS, RunTime};
+use super::contents::{
+    Average, BALANCES, CURVES, Combine, DischargeFigure, Keep, Pieces, RUN_RESULTS, RunTime,
+};
 use crate::schema::{Key, Kind, Word, table_schema, words_of};
+use dem_io::units::LENGTH;
 
 /// Largest number of threads.
 const MOST: f64 = 1024.0;
@@ -211,7 +214,7 @@ table_schema! {
 
 table_schema! {
     /// A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve`,
-    /// `balance`, `run_result` and `run_time`.
+    /// `balance`, `run_result`, `discharge` and `run_time`.
     pub(crate) static MEASURE = "[measures.NAME]";
 
     /// A measure of the scene.
@@ -227,6 +230,14 @@ table_schema! {
     /// A result of the fragments: `d50` and so on are sieve sizes up to which a fraction of the
     /// mass is, of all fragments or of those that left through outlets, to which all fines count.
     new("run_result", Kind::Word(|| words_of(&RUN_RESULTS)));
+    /// A figure of what left through outlets: mass, mass of the heaviest piece, sieve sizes up to
+    /// which a fraction of the mass is, or the fraction of the mass that passes a `sieve`. Fines
+    /// count as the smallest, unless an outlet is named.
+    new("discharge", Kind::Word(|| words_of(&DischargeFigure::WORDS)));
+    /// The outlet of `discharge`.
+    text("outlet", "an outlet of the scene").otherwise("all");
+    /// Opening of the sieve of `discharge = "passing"`.
+    quantity("sieve", &LENGTH).positive().otherwise("none");
     /// Time of the steps without start-up, s; the median of the repeats.
     new("run_time", Kind::Word(|| words_of(RunTime::WORDS)));
     /// Reference of the error: none, so that the response is shown; that of the scene's measure or

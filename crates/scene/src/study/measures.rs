@@ -1,7 +1,8 @@
 //! The measures of each run, and their references.
 
 use super::contents::{
-    Axis, BALANCES, CURVES, MeasureOf, Pieces, RUN_RESULTS, Reference, RunTime, StudyMeasure,
+    Axis, BALANCES, CURVES, DischargeFigure, MeasureOf, Pieces, RUN_RESULTS, Reference, RunTime,
+    StudyMeasure,
 };
 use super::keys::{MEASURE, REFERENCE};
 use crate::field::Field;
@@ -33,6 +34,7 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
         "curve",
         "balance",
         "run_result",
+        "discharge",
         "run_time",
     ];
     let one = "a measure is of one of them: remove the other";
@@ -50,8 +52,17 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
             field.choice(&RUN_RESULTS)?;
             MeasureOf::RunResult(field.text()?.to_owned())
         }
+        Some(("discharge", field)) => discharge(&table, &field)?,
         Some((_, field)) => MeasureOf::RunTime(field.choice(RunTime::WORDS)?),
     };
+    if !matches!(of, MeasureOf::Discharge(..)) {
+        for key in ["outlet", "sieve"] {
+            if let Some(field) = table.get(key) {
+                let problem = "is given without discharge, to which it belongs";
+                return Err(field.fault(problem, "add discharge = \"mass\" or another figure"));
+            }
+        }
+    }
     let reference = match table.get("reference") {
         Some(field) if matches!(of, MeasureOf::Balance(_)) => {
             let problem = "is given for a balance, whose error is compared with 0";
@@ -69,6 +80,7 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
             | MeasureOf::Masses(_)
             | MeasureOf::Curve
             | MeasureOf::RunResult(_)
+            | MeasureOf::Discharge(..)
             | MeasureOf::RunTime(_) => Reference::None,
         },
     };
@@ -85,6 +97,27 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
         reference,
         place: field.document.place(field.node.origin),
     })
+}
+
+/// The figure of what left that the key `discharge` asks for.
+fn discharge(table: &Table<'_>, field: &Field<'_>) -> Result<MeasureOf> {
+    let figure = field.choice(&DischargeFigure::WORDS)?;
+    let sieve_m: Option<f64> = table.read("sieve")?;
+    let figure = match (figure, sieve_m) {
+        (DischargeFigure::Passing(_), Some(opening_m)) => DischargeFigure::Passing(opening_m),
+        (DischargeFigure::Passing(_), None) => {
+            let problem = "is \"passing\", but there is no sieve beside it";
+            return Err(field.fault(problem, "add sieve = \"20 mm\", its opening"));
+        }
+        (_, Some(_)) => {
+            let problem = "needs no sieve, which is beside it";
+            return Err(field.fault(problem, "remove sieve, or write discharge = \"passing\""));
+        }
+        (other, None) => other,
+    };
+    let outlet = table.get("outlet");
+    let outlet = outlet.map(|field| field.text().map(str::to_owned));
+    Ok(MeasureOf::Discharge(figure, outlet.transpose()?))
 }
 
 fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {

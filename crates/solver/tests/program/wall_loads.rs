@@ -38,7 +38,12 @@ fn a_continued_run_has_the_same_books() {
     let read = |name: &str| fs::read(bench.path(name)).unwrap();
     assert!(read("whole/wall_loads.csv") != read("part/wall_loads.csv"));
     bench.good(&scene, &["--output", "part", "--resume"]);
-    for name in ["wall_loads.csv", "wall_loads.vtp"] {
+    for name in [
+        "wall_loads.csv",
+        "wall_loads.vtp",
+        "wall_loads.pvd",
+        "frames/loads_000004.vtp",
+    ] {
         let [whole, part] = ["whole", "part"].map(|folder| read(&format!("{folder}/{name}")));
         assert!(whole == part, "{name}");
     }
@@ -88,6 +93,34 @@ fn table_cells_and_summary_agree() {
 }
 
 #[test]
+fn frames_have_the_loads_so_far_where_the_walls_stand() {
+    let bench = Bench::new();
+    let scene = bench.write("plate.toml", SCENE);
+    bench.good(&scene, &["--output", "out"]);
+    let read = |name: &str| read_all_arrays(&bench.path("out").join(name)).unwrap();
+    let sum = |name: &str, column: &str| -> f64 {
+        let cells = read(name);
+        cells.get(column).unwrap_or_default().iter().sum()
+    };
+    let frames = [0, 1, 2, 3, 4].map(|at| format!("frames/loads_00000{at}.vtp"));
+    for column in ["CellData/impact_j", "CellData/wear_depth_m"] {
+        let sums = frames.each_ref().map(|name| sum(name, column));
+        assert!(sums[0] == 0.0 && sums.is_sorted(), "{sums:?}");
+        assert_eq!(sums[4], sum("wall_loads.vtp", column));
+    }
+    let index = fs::read_to_string(bench.path("out/wall_loads.pvd")).unwrap();
+    assert!(frames.iter().all(|name| index.contains(name)), "{index}");
+    let index = fs::read_to_string(bench.path("out/frames.pvd")).unwrap();
+    assert!(!index.contains("loads_"), "{index}");
+    // After 20 ms at 40 Hz the plate is 1 mm sin(1.6 pi) aside.
+    let first_y_m = |name: &str| read(name).get("Points/positions_m").unwrap()[1];
+    let aside_m = 1e-3 * (1.6 * std::f64::consts::PI).sin();
+    let moved_m = first_y_m(&frames[4]) - first_y_m("wall_loads.vtp");
+    assert!((moved_m - aside_m).abs() < 1e-8, "{moved_m} {aside_m}");
+    assert_eq!(first_y_m(&frames[0]), first_y_m("wall_loads.vtp"));
+}
+
+#[test]
 fn the_walls_are_drawn_in_colours() {
     let bench = Bench::new();
     let scene = bench.write("plate.toml", SCENE);
@@ -120,9 +153,13 @@ fn the_walls_are_drawn_in_colours() {
     let without = SCENE.replace("loads = ", "# ");
     let scene = bench.write("without.toml", without);
     bench.good(&scene, &["--output", "out", "--force"]);
-    assert!(
-        !bench.path("out/wall_loads.csv").exists() && !bench.path("out/wall_loads.vtp").exists()
-    );
+    assert!(["csv", "vtp", "pvd"].iter().all(|kind| {
+        !bench
+            .path("out")
+            .join(format!("wall_loads.{kind}"))
+            .exists()
+    }));
+    assert!(!bench.path("out/frames/loads_000000.vtp").exists());
     let (said, code) = refused(&draw("impact", "walls.png"));
     assert_eq!(code, 2);
     assert!(said.contains("no wall of the run has loads"), "{said}");

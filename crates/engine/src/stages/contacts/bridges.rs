@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::stages::chunks::CHUNK;
 use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::SAME_WAY;
+use crate::stages::walls::patches::book_bridge;
 use crate::state::State;
 use crate::state::bridges::{BridgeScratch, Bridges, PairBridge, Stepped, WallBridge};
 use crate::state::contacts::{ContactPartition, Contacts};
@@ -168,6 +169,7 @@ fn at_walls(state: &mut State, bridges: &mut Bridges, scratch: &mut BridgeScratc
         ..
     } = scratch;
     let (all, known) = (&bridges.walls, bridges.walls.len());
+    let kick_s = state.kick_s();
     stepped.clear();
     stepped.resize(known, Stepped::default());
     touches.resize_with(known.div_ceil(CHUNK), Vec::new);
@@ -201,6 +203,8 @@ fn at_walls(state: &mut State, bridges: &mut Bridges, scratch: &mut BridgeScratc
         }
         bridges.book(stepped, n >= known);
         if !stepped.is_ruptured {
+            let wall = &mut state.walls[stepped.bridge.wall as usize];
+            book_bridge(wall, &state.particles, &stepped.bridge, kick_s);
             bridges.walls.push(stepped.bridge);
         }
     }

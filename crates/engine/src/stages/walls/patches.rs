@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::motion::surface_velocity_m_s;
+use crate::state::bridges::WallBridge;
 use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::Particles;
 use crate::state::sleep::FrozenWallContact;
@@ -97,4 +98,23 @@ pub(super) fn book_sleepers(
             .add(&step, kick_s);
         wall.book = Some(book);
     }
+}
+
+/// Books the pull of a liquid bridge on a wall before a kick of `kick_s`, s.
+pub(crate) fn book_bridge(
+    wall: &mut Wall,
+    particles: &Particles,
+    bridge: &WallBridge,
+    kick_s: f64,
+) {
+    let Some(mut book) = wall.book.take() else {
+        return;
+    };
+    let pose = &particles.poses[bridge.particle as usize];
+    let normal = Vector3::from(bridge.normal);
+    let foot = pose.place() - normal * (pose.radius_m() + bridge.gap_m);
+    let step = PatchStep::of(&wall.frame, bridge.load.force_n.into(), normal);
+    book.of(patch_at(wall, foot, (-normal).into()))
+        .add(&step, kick_s);
+    wall.book = Some(book);
 }

@@ -7,6 +7,7 @@ use dem_scene::WallMotion;
 use nalgebra::Vector3;
 
 use crate::pictures::subject::{around, corners_m, plane_patch, points_of};
+use crate::wall_patches::{Position, wall_patches};
 use dem_engine::state::State;
 use dem_engine::state::walls::Wall;
 use dem_physics::geometry::Bounds;
@@ -24,6 +25,8 @@ pub(crate) struct WallOutput {
     moving: Vec<Option<Patch>>,
     /// Large walls that never move, where they stand.
     fixed: WallTriangles,
+    /// Whether loads are booked on any wall.
+    has_loads: bool,
 }
 
 /// The triangles of a wall in its own frame.
@@ -40,6 +43,7 @@ impl WallOutput {
             around: around(start, &points_of(start)),
             moving: Vec::new(),
             fixed: WallTriangles::default(),
+            has_loads: start.walls.iter().any(|wall| wall.model.book.is_some()),
         };
         for (number, wall) in (0..).zip(&start.walls) {
             let patch = corners_m(&wall.model.shape).map(|corners| Patch::of(&corners));
@@ -58,10 +62,10 @@ impl WallOutput {
 
     /// The files that hold them.
     pub(crate) fn files(&self) -> WallFiles {
-        match (self.moving.is_empty(), self.fixed.triangles.is_empty()) {
-            (true, _) => WallFiles::None,
-            (false, true) => WallFiles::EachFrame,
-            (false, false) => WallFiles::EachFrameAndFixed,
+        WallFiles {
+            each_frame: !self.moving.is_empty(),
+            fixed: !self.fixed.triangles.is_empty(),
+            loads: self.has_loads,
         }
     }
 
@@ -99,6 +103,7 @@ impl WallOutput {
             let centres = new.iter().map(|t| centre(&shown.triangles.points_m, t));
             shown.velocities_m_s.extend(centres.map(velocity));
         }
+        shown.loads = wall_patches(&state.walls, Position::Now);
         shown
     }
 }

@@ -22,6 +22,14 @@ fragment_masses = "remaining"
 reference = "finest"
 [measures.d50]
 run_result = "d50"
+[measures.left_kg]
+discharge = "mass"
+outlet = "away"
+[measures.left_d50]
+discharge = "d50"
+[measures.left_small]
+discharge = "passing"
+sieve = "2.1 mm"
 "#;
 
 #[test]
@@ -72,6 +80,54 @@ fn distributions_of_masses_are_compared() {
         "{d50_m}"
     );
     assert_eq!(table["measures"][2]["unit"], "m");
+}
+
+#[test]
+fn what_left_is_weighed_and_sieved() {
+    let scene = crate::program::good("following.toml").display().to_string();
+    let bench = bench(&PIECES.replace("SCENE", &scene));
+    good(&bench, &["--quiet"]);
+    let run = bench.path("study-sweep/runs/0001-1");
+    let summary: Value =
+        serde_json::from_slice(&fs::read(run.join("summary.json")).unwrap()).unwrap();
+    let of_table = |name: &str| crate::program::numbers(&run.join("discharge.csv"), name);
+    let pieces = of_table("sieve_m").into_iter().zip(of_table("mass_kg"));
+    let small_kg: f64 = (pieces.filter(|(size_m, _)| *size_m <= 2.1e-3))
+        .map(|(_, mass_kg)| mass_kg)
+        .sum();
+    let all_kg = summary["population"]["discharged_kg"].as_f64().unwrap();
+    let wanted = [
+        all_kg,
+        summary["sizes"]["all"]["discharged"]["d50_m"]
+            .as_f64()
+            .unwrap(),
+        small_kg / all_kg,
+    ];
+    assert!(wanted[2] > 0.0 && wanted[2] < 1.0, "{wanted:?}");
+    let table = json(&bench);
+    for (at, (wanted, unit)) in wanted.into_iter().zip(["kg", "m", ""]).enumerate() {
+        let found = &table["runs"][0]["results"][3 + at]["value"];
+        let off = found.as_f64().unwrap() / wanted - 1.0;
+        assert!(off.abs() < 1e-12, "{found} {wanted}");
+        assert_eq!(table["measures"][3 + at]["unit"], unit);
+    }
+}
+
+#[test]
+fn outlets_of_measures_are_there() {
+    let study = |scene: &str| {
+        bench(
+            &PIECES
+                .replace("SCENE", scene)
+                .replace("\"away\"", "\"awa\""),
+        )
+    };
+    let scene = crate::program::good("following.toml").display().to_string();
+    let said = bad(&study(&scene), &[], 2);
+    assert!(
+        said.contains("has no outlet 'awa'; did you mean 'away'?"),
+        "{said}"
+    );
 }
 
 #[test]
