@@ -188,7 +188,8 @@ out vec4 pixel;
 void main() {
   if (dot(cut.xyz, world) > cut.w) discard;
   vec3 normal = normalize(cross(dFdx(at), dFdy(at)));
-  pixel = vec4(shade(c, normal.z < 0.0 ? -normal : normal, at), 1.0);
+  // Little shade, so that the colours are those of the scale.
+  pixel = vec4(mix(c, shade(c, normal.z < 0.0 ? -normal : normal, at), 0.4), 1.0);
 }`);
 
 function program(vertex, fragment) {
