@@ -179,7 +179,7 @@ impl Template {
         let width_m = body.extent_m[0];
         let (what, dimension, default_si, range_si) = match self {
             Self::Drop => ("of the fall", &LENGTH, 1.0, [1e-3, 1e3]),
-            Self::DropWeight => ("of the fall of the weight", &LENGTH, 0.3, [1e-3, 1e2]),
+            Self::DropWeight => ("of the fall of the weight", &LENGTH, 0.2, [1e-3, 1e2]),
             Self::Chute => ("of the belt", &VELOCITY, 2.0, [0.1, 20.0]),
             Self::Mill => {
                 let range = [0.05, 2.0].map(|factor| factor * critical_rad_s);
