@@ -164,6 +164,10 @@ fn wrong_sheets_are_refused_with_one_message() {
             "1.csv: line 4: the t10 is 9 % at 2.5 kWh/t, but 25 % at 1 kWh/t at 1.csv: line 3: more energy does not make coarser pieces; check both lines for swapped energies, sizes or columns",
         ),
         (
+            vec![sheet("30,0.25,85,9.3 30,1,85,4.5 30,2.5,85,45")],
+            "1.csv: line 3: the t10 is 4.5 % at 1 kWh/t, but 9.3 % at 0.25 kWh/t at 1.csv: line 2: more energy does not make coarser pieces",
+        ),
+        (
             vec![sheet("30,0.25,85,45 30,1,85,40 30,2.5,85,36")],
             "1.csv: line 4: the t10 is 36 % at 2.5 kWh/t, but 45 % at 0.25 kWh/t at 1.csv: line 2: in all tests of this size it falls with the energy",
         ),

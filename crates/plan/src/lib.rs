@@ -37,7 +37,7 @@ use std::sync::Arc;
 use dem_io::body::About;
 use dem_io::body::mass::BodyMass;
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{Integrator, Scene};
+use dem_scene::{Integrator, Scene, StartAs};
 
 use dem_engine::check::limit::damping_bound_1_s;
 use dem_engine::check::pass_through::passes_through;
@@ -332,9 +332,14 @@ fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> 
         let radii_m = radii_m(name).iter().copied();
         2.0 * radii_m.fold(f64::INFINITY, f64::min)
     };
-    // Those of bodies of one sphere are no fragments of a packing.
+    let stays_rigid = |name: &String| {
+        let is_clump = scene.bodies[name].start_as != StartAs::Bonded;
+        is_clump && !scene.replacement.contains_key(name)
+    };
+    // Bodies of one sphere, and those that never break, are no fragments of a packing.
     let mean_diameter_m = |name: &String| match radii_m(name) {
         [] | [_] => 0.0,
+        _ if stays_rigid(name) => 0.0,
         radii_m => {
             let cubes: f64 = radii_m.iter().map(|radius| radius.powi(3)).sum();
             2.0 * radii_m.iter().map(|radius| radius.powi(4)).sum::<f64>() / cubes

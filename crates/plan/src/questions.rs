@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use super::masses::sphere_density_kg_m3;
 use super::measure::measurement::Measurement;
 use super::unfinished::unfinished;
-use super::walls::crossings;
+use super::walls::{crossings, shaking};
 use dem_engine::check::validity::LARGEST_OVERLAP;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
@@ -38,6 +38,7 @@ pub(super) fn doubts(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> Vec
     doubts.extend(too_strong(scene));
     doubts.extend(few_rows(scene));
     doubts.extend(crossings(&state.walls));
+    doubts.extend(shaking(&state.walls));
     doubts.extend(scene.measures.iter().filter_map(|(name, measure)| {
         let doubt = (Measurement::of(measure).doubt)(scene)?;
         Some(format!("measures.{name}: {doubt}"))

@@ -25,7 +25,7 @@ use dem_physics::rotation::{numbers, rotation};
 
 use self::books::book_model;
 pub use self::machine::stroke_m;
-pub(super) use self::machine::{crossings, largest_step_s, refuse_long_step};
+pub(super) use self::machine::{crossings, largest_step_s, refuse_long_step, shaking};
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, question_size, surface_warnings};
 

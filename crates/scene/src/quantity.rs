@@ -3,7 +3,7 @@
 use super::targets::Subject;
 use dem_io::units::{
     ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, DENSITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER,
-    POWER, RATE, TIME, TORQUE, VELOCITY,
+    POWER, RATE, TIME, TORQUE, VELOCITY, VOLUME,
 };
 
 /// A quantity that can be measured. For a group, positions and velocities are those of its centre
@@ -188,6 +188,10 @@ pub static QUANTITIES: &[Quantity] = &[
     // Of the wall on particles since the start, and its mean over the time.
     of(&[Subject::Wall], &["work"], &ENERGY),
     of(&[Subject::Wall], &["power"], &POWER),
+    // Sums over the patches of a wall with loads, since the start.
+    of(&[Subject::Wall], &["wear_volume"], &VOLUME),
+    of(&[Subject::Wall], &["impact_energy"], &ENERGY),
+    of(&[Subject::Wall], &["friction_energy"], &ENERGY),
     of_fragments(&["count"], &NUMBER),
     // Mass of the heaviest fragment over that of all.
     of_fragments(&["mass_fraction_of_largest"], &NUMBER),

@@ -176,6 +176,7 @@ fn discharge(
     };
     let found = match figure {
         DischargeFigure::Mass => Some(pieces.mass_kg()),
+        DischargeFigure::MassFlow => Some(pieces.mass_kg() / summary.simulated_s),
         DischargeFigure::MassOfLargest => pieces.largest_kg(),
         DischargeFigure::Size(fraction) => pieces.size_m(fraction),
         DischargeFigure::Passing(opening_m) => pieces.passing(opening_m),

@@ -23,7 +23,8 @@ pub struct NamedBody {
     pub sieve_m: f64,
     /// Diameter of its smallest sphere, m: no fragment of it is smaller.
     pub smallest_diameter_m: f64,
-    /// Mean diameter of its spheres, by mass, m; 0 for a body of one sphere.
+    /// Mean diameter of its spheres, by mass, m; 0 for a body of one sphere, or one that stays
+    /// rigid.
     pub mean_diameter_m: f64,
     /// Mass fraction of its spheres that are smaller than a tenth of its size: t10 cannot be
     /// larger.

@@ -19,10 +19,13 @@ const SIZES_M: [f64; 2] = [1e-5, 10.0];
 const OTHER_UNIT: f64 = 50.0;
 /// Part of the largest t10 that a test at a fiftieth of the energy does not reach.
 const LITTLE: f64 = 0.1;
-/// A larger energy by this factor with half the t10 or less, and this difference: refused.
+/// A larger energy by this factor with half the t10 or less, and this difference: refused; with
+/// twice the energy a smaller difference suffices.
 const LARGER: f64 = 1.5;
 const MUCH_SMALLER: f64 = 0.5;
 const DIFFERENCE: f64 = 0.1;
+const TWICE: f64 = 2.0;
+const DIFFERENCE_OF_TWICE: f64 = 0.03;
 /// A t10 is compared with those of energies up to five times as large, if it should be this large;
 /// a hundred times a fraction among percent is within these factors of it.
 const NEAR: f64 = 0.2;
@@ -209,8 +212,14 @@ fn falling(tests: &[DropWeightTest], group: &SizeGroup) -> Result<()> {
     };
     for (at, (low, t10)) in points.iter().enumerate() {
         for (high, higher) in &points[at + 1..] {
-            let is_larger = tests[*high].energy_j_kg > LARGER * tests[*low].energy_j_kg;
-            if is_larger && *higher < MUCH_SMALLER * t10 && t10 - higher > DIFFERENCE {
+            let ratio = tests[*high].energy_j_kg / tests[*low].energy_j_kg;
+            let difference = if ratio > TWICE {
+                DIFFERENCE_OF_TWICE
+            } else {
+                DIFFERENCE
+            };
+            let is_smaller = *higher < MUCH_SMALLER * t10 && t10 - higher > difference;
+            if ratio > LARGER && is_smaller {
                 return refuse(*low, *high, "more energy does not make coarser pieces");
             }
         }

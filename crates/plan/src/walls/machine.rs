@@ -19,6 +19,10 @@ use super::points::points_of;
 /// its amplitude.
 const STEPS_IN_PERIOD: f64 = 20.0;
 
+/// Acceleration of a wall, as a multiple of gravity, above which its frequency is asked for.
+const MOST_GRAVITY: f64 = 200.0;
+const GRAVITY_M_S2: f64 = 9.81;
+
 /// Moments of a period at which a wall is looked at. Those at both ends of a swing are among them.
 const MOMENTS: usize = 32;
 
@@ -217,6 +221,26 @@ pub(crate) fn crossings(walls: &[Wall]) -> Vec<String> {
         }
     }
     found
+}
+
+/// Walls that shake far harder than any machine does, a sentence each: the frequency may be one in
+/// revolutions per minute.
+pub(crate) fn shaking(walls: &[Wall]) -> Vec<String> {
+    let sentence = |wall: &Wall| {
+        let amplitude_m = 0.5 * stroke_m(wall, 0.0)?;
+        let hz = frequency_hz(&wall.model.motion)?;
+        let times_gravity = amplitude_m * (TAU * hz).powi(2) / GRAVITY_M_S2;
+        (times_gravity > MOST_GRAVITY).then(|| {
+            format!(
+                "the wall '{}' shakes with {} times gravity, {} to either side at {}: is its frequency one in rpm? Vibrating screens take up to ten times gravity",
+                wall.model.name,
+                significant(times_gravity, 2),
+                show_length(amplitude_m),
+                show_quantity(hz, "Hz"),
+            )
+        })
+    };
+    walls.iter().filter_map(sentence).collect()
 }
 
 /// A wall and points on its surface, in its own frame, m.

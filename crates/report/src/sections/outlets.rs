@@ -7,8 +7,9 @@ use dem_results::{SievedPieces, discharged};
 /// Tonnes per hour of a kilogram per second.
 const T_H: f64 = 3.6;
 
-/// Adds a row for each outlet that has taken pieces. `until_s`: length of the run.
-pub(crate) fn add_outlets(page: &mut Page, discharge_csv: &str, until_s: f64) {
+/// Adds a row for each outlet that has taken pieces. `until_s`: length of the run; `fines_kg`: of
+/// fines that were only booked.
+pub(crate) fn add_outlets(page: &mut Page, discharge_csv: &str, until_s: f64, fines_kg: f64) {
     let Some(outlets) = discharged(discharge_csv).filter(|outlets| !outlets.is_empty()) else {
         return;
     };
@@ -42,6 +43,12 @@ pub(crate) fn add_outlets(page: &mut Page, discharge_csv: &str, until_s: f64) {
     };
     let rows = outlets.into_iter().map(row).collect();
     page.table(&Table { columns, rows });
+    if fines_kg > 0.0 {
+        let fines = show_quantity(fines_kg, "kg");
+        page.small(&format!(
+            "Pieces only: {fines} of fines, too small to be followed, are in no row."
+        ));
+    }
 }
 
 #[cfg(test)]
@@ -53,15 +60,23 @@ mod tests {
         let csv = "time_s,outlet,mass_kg,sieve_m\n\
             0.1,product,0.4,0.02\n0.2,spill,1,0.05\n0.3,product,0.1,0.01\n0.4,product,0.5,0.03\n";
         let mut page = Page::new("chute");
-        add_outlets(&mut page, csv, 2.0);
+        add_outlets(&mut page, csv, 2.0, 0.25);
         let html = page.html();
         for text in [
-            "product", "spill", "0.5 kg/s", "1.8 t/h", "10 mm", "20 mm", "30 mm", "50 mm",
+            "product",
+            "spill",
+            "0.5 kg/s",
+            "1.8 t/h",
+            "10 mm",
+            "20 mm",
+            "30 mm",
+            "50 mm",
+            "250 g of fines",
         ] {
             assert!(html.contains(text), "{text} is not in {html}");
         }
         let mut empty = Page::new("chute");
-        add_outlets(&mut empty, "time_s,outlet,mass_kg,sieve_m\n", 2.0);
+        add_outlets(&mut empty, "time_s,outlet,mass_kg,sieve_m\n", 2.0, 0.0);
         assert!(!empty.html().contains("outlet"));
     }
 }

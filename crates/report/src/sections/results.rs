@@ -92,7 +92,8 @@ pub(crate) fn add_results(page: &mut Page, summary: &Summary, folder: &Folder) {
         add_sizes(page, sizes);
     }
     if let Some(discharge) = folder.text("discharge.csv") {
-        add_outlets(page, &discharge, summary.simulated_s);
+        let fines_kg = summary.population.as_ref().map_or(0.0, |p| p.fines_kg);
+        add_outlets(page, &discharge, summary.simulated_s, fines_kg);
     }
     let distribution = folder.text("distribution.csv");
     if let Some(table) = distribution.as_deref().and_then(passing) {
@@ -258,15 +259,12 @@ fn facts(summary: &Summary) -> Vec<[String; 2]> {
     }
     let population = summary.population.as_ref();
     if let Some(fragments) = &summary.fragments {
-        let [fragments_left, of_all] = match population.map_or(0, |all| all.discharged) {
-            0 => ["fragments", "largest fragment, share of the mass"],
-            _ => [
-                "fragments left inside",
-                "largest fragment, share of the mass inside",
-            ],
-        };
-        add(fragments_left, fragments.count.to_string());
-        add(of_all, percent(fragments.mass_fraction_of_largest));
+        add("fragments", fragments.count.to_string());
+        if population.is_some_and(|all| all.discharged > 0) {
+            add("fragments inside at the end", fragments.inside.to_string());
+        }
+        let largest = percent(fragments.mass_fraction_of_largest);
+        add("largest fragment, share of the mass of all", largest);
     }
     if let Some(population) = population {
         add_population(population, &mut add);

@@ -167,6 +167,23 @@ fn a_motion_through_another_wall_is_doubtful() {
     }
 }
 
+#[test]
+fn a_frequency_in_rpm_without_its_unit_is_asked_for() {
+    for (unit, asks) in [("Hz", true), ("rpm", false)] {
+        let orbit = format!(
+            "orbit = {{ axis = [0, 1, 0], towards = [1, 0, 0], radius = 4e-3, frequency = \"900 {unit}\" }}"
+        );
+        let plan = planned(&scene("", &[&deck(&orbit)]).replace(", }", " }"));
+        let said = plan.warnings.iter().find(|said| said.contains("rpm?"));
+        assert_eq!(said.is_some(), asks, "{:?}", plan.warnings);
+        // (2 pi 900/s)^2 4 mm over 9.81 m/s2.
+        assert!(
+            said.is_none_or(|said| said.contains("13000 times gravity")),
+            "{said:?}"
+        );
+    }
+}
+
 /// Walls stand where their motion begins, and go along their paths without drift.
 #[test]
 fn walls_keep_to_their_paths() {

@@ -354,6 +354,8 @@ pub enum MeasureOf {
 pub enum DischargeFigure {
     /// "mass": their mass, kg.
     Mass,
+    /// "mass-flow": their mass over the time of the run, kg/s.
+    MassFlow,
     /// "mass-of-largest": mass of the heaviest, kg.
     MassOfLargest,
     /// "d10", "d50", "d80": sieve size up to which this fraction of the mass is, m.
@@ -364,8 +366,9 @@ pub enum DischargeFigure {
 
 impl DischargeFigure {
     /// The words; "passing" stands for a sieve that is given beside it.
-    pub(super) const WORDS: [(&'static str, Self); 6] = [
+    pub(super) const WORDS: [(&'static str, Self); 7] = [
         ("mass", Self::Mass),
+        ("mass-flow", Self::MassFlow),
         ("mass-of-largest", Self::MassOfLargest),
         ("d10", Self::Size(0.1)),
         ("d50", Self::Size(0.5)),
@@ -377,6 +380,7 @@ impl DischargeFigure {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Mass | Self::MassOfLargest => "kg",
+            Self::MassFlow => "kg/s",
             Self::Size(_) => "m",
             Self::Passing(_) => "",
         }

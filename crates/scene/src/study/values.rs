@@ -55,6 +55,7 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
             ..of_node(item.node, only)
         });
     }
+    tell_apart(&mut values, &nodes);
     with_sizes(&mut values, size.as_ref(), names.as_ref())?;
     Ok(Axis {
         name: path.to_owned(),
@@ -79,6 +80,7 @@ pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<A
             let only = only_component(&items);
             let nodes = items.iter().map(|item| of_node(item.node, only));
             values = nodes.collect();
+            tell_apart(&mut values, &items);
         } else if items.len() != values.len() {
             let limit = format!("a list of {}, as the one before it", values.len());
             return Err(list.wrong(&limit, "give each path as many values"));
@@ -146,6 +148,17 @@ fn of_node(node: &Node, only: Option<usize>) -> AxisValue {
         settings: Vec::new(),
         size: size_of(node),
         number: split(shown),
+    }
+}
+
+/// Gives files of the same name their whole paths as labels.
+fn tell_apart(values: &mut [AxisValue], items: &[Field<'_>]) {
+    let labels: Vec<String> = values.iter().map(|value| value.label.clone()).collect();
+    for (value, item) in values.iter_mut().zip(items) {
+        let alike = labels.iter().filter(|label| **label == value.label);
+        if let (Value::Text(text), true) = (&item.node.value, alike.count() > 1) {
+            value.label.clone_from(text);
+        }
     }
 }
 

@@ -117,8 +117,8 @@ pub(super) enum Command {
         #[arg(long, short)]
         quiet: bool,
     },
-    /// Make a folder with a scene to start from: drop, drop-weight, chute, crusher, mill, silo,
-    /// bending, brazilian or compression
+    /// Make a folder with a scene to start from: drop, drop-weight, chute, crusher, cone, mill,
+    /// screen, silo, bending, brazilian or compression
     #[command(
         after_help = "Makes FOLDER with scene.toml, shape.stl, body.vtp (the shape packed with spheres) and scene.schema.json for editors.\n\
                       On a terminal it asks what the options leave open, and Enter takes the default; elsewhere defaults are taken.\n\

@@ -126,6 +126,35 @@ fn frames_have_the_loads_so_far_where_the_walls_stand() {
 }
 
 #[test]
+fn loads_are_measured() {
+    let bench = Bench::new();
+    let quantities = ["wear_volume", "impact_energy", "friction_energy"];
+    let measures = quantities
+        .map(|name| format!("[measures.{name}]\nof = \"plate\"\nquantity = \"{name}\"\n"))
+        .concat();
+    let scene = bench.write("plate.toml", format!("{SCENE}{measures}"));
+    bench.good(&scene, &["--output", "out"]);
+    let summary: Value =
+        serde_json::from_slice(&fs::read(bench.path("out/summary.json")).unwrap()).unwrap();
+    let of_plate = &summary["wall_loads"]["plate"];
+    for (name, booked) in quantities
+        .into_iter()
+        .zip(["wear_volume_m3", "impact_j", "friction_j"])
+    {
+        let measures = summary["measures"].as_array().unwrap();
+        let found = measures.iter().find(|one| one["name"] == name).unwrap();
+        assert!(found["value"].as_f64().unwrap() > 0.0);
+        assert_eq!(found["value"], of_plate[booked]);
+    }
+    let without = format!("{SCENE}{measures}").replace("loads = ", "# ");
+    let scene = bench.write("without.toml", without);
+    let mut command = dem_run();
+    let (said, code) = refused(&command.arg(&scene).output().unwrap());
+    assert_eq!(code, 2);
+    assert!(said.contains("the wall \"plate\" has no loads"), "{said}");
+}
+
+#[test]
 fn the_walls_are_drawn_in_colours() {
     let bench = Bench::new();
     let scene = bench.write("plate.toml", SCENE);
