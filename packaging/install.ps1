@@ -1,9 +1,8 @@
 # Installs dem-pack and dem-run into a folder of the user, or into that which CRUMBLE_BIN names, and puts it on the user's PATH.
 # At a release, the address of its files and its version take the places between @.
-$ErrorActionPreference = "Stop"
-$ProgressPreference = "SilentlyContinue"
-
 function Install-Crumble {
+    $ErrorActionPreference = "Stop"
+    $ProgressPreference = "SilentlyContinue"
     $address = if ($env:CRUMBLE_ADDRESS) { $env:CRUMBLE_ADDRESS } else { "@ADDRESS@" }
     $bin = if ($env:CRUMBLE_BIN) { $env:CRUMBLE_BIN } else { Join-Path $env:LOCALAPPDATA "Programs\crumble-dem" }
     $name = "crumble-dem-@VERSION@-windows-x86_64"
@@ -20,7 +19,7 @@ function Install-Crumble {
         }
         Expand-Archive (Join-Path $folder "$name.zip") $folder
         New-Item -ItemType Directory -Force -Path $bin | Out-Null
-        Move-Item -Force (Join-Path $folder "$name\dem-*.exe") $bin
+        Copy-Item -Force (Join-Path $folder "$name\dem-*.exe") $bin
     } finally {
         Remove-Item -Recurse -Force $folder
     }
