@@ -3,6 +3,7 @@
 
 mod bonded_in_part;
 mod cantilevers;
+mod chung_ooi;
 mod clumps;
 mod contacts;
 mod damping;
@@ -15,5 +16,6 @@ pub(crate) mod page;
 mod plasticity;
 mod relaxation;
 pub(crate) mod scene;
+mod size_ratios;
 mod table;
 mod time_step;
