@@ -2,6 +2,7 @@
 //! references.
 
 mod bonded_in_part;
+mod bonded_round_robin;
 mod cantilevers;
 mod chung_ooi;
 mod clumps;
