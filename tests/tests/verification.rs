@@ -2,7 +2,9 @@
 //! references.
 
 mod bonded_in_part;
+mod bonded_round_robin;
 mod cantilevers;
+mod chung_ooi;
 mod clumps;
 mod contacts;
 mod damping;
@@ -15,5 +17,6 @@ pub(crate) mod page;
 mod plasticity;
 mod relaxation;
 pub(crate) mod scene;
+mod size_ratios;
 mod table;
 mod time_step;

@@ -88,15 +88,15 @@ fn output_of(command: &mut Command, codes: &[i32]) -> Result<Vec<u8>, Failed> {
 }
 
 impl Bench {
-    /// Builds the programs.
-    pub(crate) fn new(subject: &str, resumes: bool) -> Result<Self, Failed> {
+    /// Builds the programs, if they are needed.
+    pub(crate) fn new(subject: &str, resumes: bool, builds: bool) -> Result<Self, Failed> {
         let folder = results(subject)?;
         let target = folder.ancestors().nth(2).ok_or("no target folder")?;
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(cargo);
         build.args(["build", "--release", "--quiet", "--bins"]);
         build.args(["-p", "dem-pack", "-p", "dem-run", "--target-dir"]);
-        if !build.arg(target).current_dir(root()).status()?.success() {
+        if builds && !build.arg(target).current_dir(root()).status()?.success() {
             return Err("the programs cannot be built".into());
         }
         let program = |name: &str| {

@@ -11,6 +11,7 @@
 //! lists the commands.
 
 mod bench;
+mod board;
 mod bulk;
 mod calibration;
 mod calibration_cases;
@@ -40,7 +41,10 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 29] = [
+const COMMANDS: [(&str, Work); 32] = [
+    ("board page", board::write),
+    ("board penetration", board::penetration),
+    ("board times", board::measure),
     ("bulk heaps", bulk::heaps),
     ("bulk route", bulk::route),
     ("calibration cases", calibration_cases::cases),
@@ -97,5 +101,10 @@ fn work() -> Result<(), Failed> {
         return Err(format!("write one of these, then --resume or nothing:\n{all}").into());
     };
     let subject = words[0].as_str();
-    work(&Bench::new(subject, resumes || subject == "thesis")?)
+    let builds = !["board page", "board times"].contains(&wanted.as_str());
+    work(&Bench::new(
+        subject,
+        resumes || subject == "thesis",
+        builds,
+    )?)
 }

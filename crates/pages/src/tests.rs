@@ -10,12 +10,13 @@ use crate::bench::root;
 use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
-    COMMANDS, bulk, calibration, calibration_cases, dynamic, laboratory, packing, parameters,
-    pressing, process, replacement, round_robin, self_contact, thesis,
+    COMMANDS, board, bulk, calibration, calibration_cases, dynamic, laboratory, packing,
+    parameters, pressing, process, replacement, round_robin, self_contact, thesis,
 };
 
 fn tables() -> Vec<Table> {
     let mut all = Vec::new();
+    all.extend(board::tables().unwrap());
     all.extend(bulk::tables());
     all.extend(calibration::tables());
     all.extend(calibration_cases::tables());
@@ -52,7 +53,7 @@ fn pages() -> Vec<PathBuf> {
 fn words(page: &str) -> Vec<String> {
     let lines = page.lines();
     let markers = lines.filter_map(|line| line.strip_prefix("<!-- table: ")?.strip_suffix(" -->"));
-    let others = ["cargo bench ", "tests/lammps/"];
+    let others = ["cargo bench ", "tests/"];
     markers
         .filter(|words| !others.iter().any(|other| words.starts_with(other)))
         .map(str::to_owned)
@@ -103,6 +104,17 @@ fn the_pages_have_the_tables_of_this_program() {
             known.retain(|cell| left.next_if_eq(&cell).is_some());
         }
         assert_eq!(shown, known, "{what}");
+    }
+}
+
+/// The board has the numbers that stand on the other pages now.
+#[test]
+fn the_board_has_the_numbers_of_the_pages() {
+    let tables = board::tables().unwrap();
+    let page = std::fs::read_to_string(root().join(tables[0].page)).unwrap();
+    for (at, table) in tables.iter().enumerate() {
+        let [_, text, _] = parts(&page, table.words, place(&tables, at)).unwrap();
+        assert_eq!(text, table.markdown().unwrap(), "run dem-pages board page");
     }
 }
 

@@ -1,0 +1,47 @@
+//! The table of the board.
+
+use super::robin;
+use super::rows::{Row, bonded, measured, of_programs, of_sections, of_tables};
+use crate::bench::{Bench, Failed};
+use crate::table::{Table, write as write_tables};
+
+const HEAD: &str = "case | source | ours | theirs | error | hardware | run time";
+
+fn row_cells(row: Row) -> Vec<String> {
+    [
+        row.case,
+        row.source,
+        row.ours,
+        row.theirs,
+        row.error,
+        row.hardware,
+        row.time,
+    ]
+    .into()
+}
+
+/// The tables of the page, whole: one for each kind of source.
+pub(crate) fn tables() -> Result<[Table; 5], Failed> {
+    let mut tables = Vec::new();
+    let of_others = [robin::rows()?, measured()?].concat();
+    for rows in [
+        of_others,
+        of_programs()?,
+        bonded()?,
+        of_tables()?,
+        of_sections()?,
+    ] {
+        let page = "tests/verification/board.md";
+        let none: [String; 0] = [];
+        let mut table = Table::new(page, "board page", HEAD, none);
+        for row in rows {
+            table.row(row_cells(row));
+        }
+        tables.push(table);
+    }
+    tables.try_into().map_err(|_| "not five tables".into())
+}
+
+pub(crate) fn write(_: &Bench) -> Result<(), Failed> {
+    write_tables(&tables()?)
+}
