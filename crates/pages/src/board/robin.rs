@@ -78,6 +78,8 @@ pub(super) fn rows() -> Result<Vec<Row>, Failed> {
         ("after 20 ms", at(&way, 20.0), "20"),
         ("after 30 ms", at(&way, 30.0), "30"),
         ("lowest", Some(lowest), "lowest"),
+        ("after 40 ms", at(&way, 40.0), "40"),
+        ("after 60 ms", at(&way, 60.0), "60"),
     ] {
         let Some(here) = here else { continue };
         let theirs = programs.iter().map(|program| {

@@ -261,7 +261,7 @@ struct Deviation {
     source: &'static str,
     page: &'static str,
     section: &'static str,
-    /// The which-th table of the section, and the column.
+    /// Which of the tables of the section, and which column, from 0.
     at: [usize; 2],
     unit: &'static str,
 }
@@ -319,8 +319,8 @@ const DEVIATIONS: [Deviation; 8] = [
         1,
     ),
     of_quartzite("fragments of quartzite below 1/4 of its size", 2),
-    of_quartzite("below 1/10", 4),
-    of_quartzite("below 1/25", 6),
+    of_quartzite("fragments of quartzite below 1/10 of its size", 4),
+    of_quartzite("fragments of quartzite below 1/25 of its size", 6),
 ];
 
 const fn of_quartzite(case: &'static str, column: usize) -> Deviation {

@@ -127,8 +127,8 @@ impl Impact {
         HERTZ_DURATION * self.overlap_m() / self.speed_m_s()
     }
 
-    /// Velocity with which the surface of the ball slides on the other, m/s, from velocities along x
-    /// and spins.
+    /// Velocity with which the surface of the ball slides on the other, m/s, from velocities along
+    /// x and spins.
     pub(crate) fn slip_m_s(&self, across_m_s: [f64; 2], spins_rad_s: [f64; 2]) -> f64 {
         let other_m = self.other.map_or(0.0, |other| other.radius_m);
         let turned = self.ball.radius_m * spins_rad_s[0] + other_m * spins_rad_s[1];
@@ -160,8 +160,8 @@ impl Impact {
         )
     }
 
-    /// The same after a tangential impulse, N s, against the motion of the ball along x, whose lever
-    /// is shorter than each radius by `sunk_m` in the mean.
+    /// The same after a tangential impulse, N s, against the motion of the ball along x, whose
+    /// lever is shorter than each radius by `sunk_m` in the mean.
     fn after(&self, impulse: f64, sunk_m: f64) -> [[f64; 2]; 2] {
         let turned = |ball: &Ball| {
             let inertia = 0.4 * ball.mass_kg() * ball.radius_m * ball.radius_m;

@@ -162,8 +162,8 @@ pub(super) fn rolls_off() -> String {
     compared("ratio of the radii", "", &cases)
 }
 
-/// The angles at which it leaves in LAMMPS, stored by tests/lammps/size_ratios.py, beside the closed
-/// form; and the version of LAMMPS.
+/// The angles at which it leaves in LAMMPS, stored by tests/lammps/size_ratios.py, beside the
+/// closed form; and the version of LAMMPS.
 pub(super) fn by_lammps() -> [String; 2] {
     let stored = include_str!("../../../lammps/size-ratios.json");
     let stored: serde_json::Value = serde_json::from_str(stored).unwrap();
