@@ -94,3 +94,27 @@ fn flows_and_mixtures_look_as_documented() {
         "measure,x_m,y_m,z_m,mass_kg,fraction\nmixing,0.5,-0.5,1.5,2,0.25\n"
     );
 }
+
+#[test]
+fn pieces_are_sieved_by_outlet() {
+    let csv = "outlet,body,mass_kg,sieve_m\n\
+        product,ore,0.4,0.02\nspill,\"a, b\",1,0.05\nproduct,ore,0.1,0.01\nproduct,ore,0.5,0.03\n";
+    let all = discharged(csv).unwrap_or_default();
+    let product = &all["product"];
+    assert_eq!((product.count(), product.largest_kg()), (3, Some(0.5)));
+    assert!((product.mass_kg() - 1.0).abs() < 1e-15);
+    let sizes = [0.0, 0.1, 0.11, 0.5, 0.51, 1.0].map(|part| product.size_m(part));
+    assert_eq!(
+        sizes,
+        [0.01, 0.01, 0.02, 0.02, 0.03, 0.03].map(Some),
+        "the sums of masses are 0.1, 0.5 and 1 kg"
+    );
+    let passing = [0.009, 0.01, 0.029, 0.03].map(|m| product.passing(m).unwrap_or(f64::NAN));
+    assert_eq!(passing[0], 0.0);
+    assert!((passing[1] - 0.1).abs() < 1e-15 && (passing[2] - 0.5).abs() < 1e-15);
+    assert_eq!(passing[3], 1.0);
+    assert_eq!(all["spill"].count(), 1);
+    let none = SievedPieces::default();
+    assert_eq!((none.size_m(0.5), none.passing(1.0)), (None, None));
+    assert_eq!(discharged("time_s,mass_kg\n1,1\n"), None);
+}

@@ -178,7 +178,7 @@ fn a_frequency_in_rpm_without_its_unit_is_asked_for() {
         assert_eq!(said.is_some(), asks, "{:?}", plan.warnings);
         // (2 pi 900/s)^2 4 mm over 9.81 m/s2.
         assert!(
-            said.is_none_or(|said| said.contains("13000 times gravity")),
+            said.is_none_or(|said| said.contains("13039 times gravity, 4 mm")),
             "{said:?}"
         );
     }
