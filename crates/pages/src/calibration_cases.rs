@@ -226,7 +226,7 @@ fn row(record: &Record, case: &Case, round: &Round, fresh: &[Vec<f64>]) -> Vec<S
         let half = half_width(&statistic)? / statistic.mean;
         // half_width has a factor of 1/sqrt(count): the prediction interval of another mean.
         let wider = (1.0 + statistic.count as f64 / f64::from(FRESH)).sqrt();
-        Some(format!("± {:.0} %", 100.0 * half * wider))
+        Some(format!("± {:.1} %", 100.0 * half * wider))
     });
     cells.push(promised.collect::<Vec<_>>().join(", "));
     cells

@@ -3,7 +3,9 @@
 use std::fs;
 
 use dem_results::columns::{header, lines, write_table};
-use dem_results::{DischargeRow, DistributionRow, FlowRow, MixingRow, Table};
+use dem_results::{
+    DischargeRow, DistributionRow, FlowRow, MixingRow, SievedPieces, Table, discharged,
+};
 use tempfile::tempdir;
 
 fn row(fragment_id: u32, time_s: f64) -> DischargeRow<'static> {
