@@ -104,14 +104,13 @@ impl LoadCells {
     }
 
     /// Without the triangles on which nothing has pressed.
-    pub(crate) fn touched(mut self) -> Self {
-        let is_touched: Vec<bool> = (self.values.iter())
-            .map(|values| values.iter().any(|value| *value != 0.0))
-            .collect();
-        let mut keep = is_touched.iter();
-        self.triangles_m.retain(|_| keep.next() == Some(&true));
-        let mut keep = is_touched.iter();
-        self.values.retain(|_| keep.next() == Some(&true));
-        self
+    pub(crate) fn touched(self) -> Self {
+        let both = self.triangles_m.into_iter().zip(self.values);
+        let touched = both.filter(|(_, values)| values.iter().any(|value| *value != 0.0));
+        let (triangles_m, values) = touched.unzip();
+        Self {
+            triangles_m,
+            values,
+        }
     }
 }
