@@ -1,7 +1,7 @@
 //! The patches of walls in space, with what contacts have done to them.
 
 use dem_engine::state::walls::Wall;
-use dem_physics::contact::patch_book::{PatchBook, WallBook, WallBookModel};
+use dem_physics::contact::patch_book::PatchBook;
 use dem_physics::geometry::Frame;
 use dem_physics::geometry::patches::Patch;
 use dem_results::WallPatch;
@@ -18,7 +18,7 @@ pub(crate) enum Position {
 /// The patches of all walls with loads.
 pub(crate) fn wall_patches(walls: &[Wall], position: Position) -> Vec<WallPatch> {
     let booked = (0..).zip(walls).filter_map(|(number, wall)| {
-        let (model, book) = wall_book(wall)?;
+        let (model, book) = wall.booked()?;
         let place = match position {
             Position::Start => &model.start,
             Position::Now => &wall.frame,
@@ -32,11 +32,6 @@ pub(crate) fn wall_patches(walls: &[Wall], position: Position) -> Vec<WallPatch>
         }))
     });
     booked.flatten().collect()
-}
-
-/// How the loads of a wall are booked, and the books. None: they are not.
-pub(crate) fn wall_book(wall: &Wall) -> Option<(&WallBookModel, &WallBook)> {
-    Some((wall.model.book.as_ref()?, wall.book.as_deref()?))
 }
 
 /// A book with impulses along axes in space of a wall in this position.

@@ -86,7 +86,8 @@ table_schema! {
     text("of", "a group, a body, a wall, `all` or `fragments`").or_word(ALL);
     /// For a wall: `force`, `torque` about its pivot, `position` of its pivot, `work` on particles
     /// since the start, `power`, its mean over the time since then, and with `loads`
-    /// `wear_volume`, `impact_energy`, `friction_energy`, since the start; for `fragments`: `count`, `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and
+    /// `wear_volume`, `impact_energy`, `friction_energy`, since the start; for `fragments`:
+    /// `count`, `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and
     /// `position` and `force`.
     new("quantity", Kind::Word(|| named().map(|(name, _)| name).collect()))
         .required("\"displacement_x\"");

@@ -3,7 +3,7 @@
 mod attraction;
 mod ball;
 mod beside_bond;
-mod impact;
+pub(crate) mod impact;
 mod plane;
 
 use self::attraction::{adhesion, liquid_bridge};

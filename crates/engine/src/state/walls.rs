@@ -150,6 +150,11 @@ impl Wall {
         Bounds::of(corners.map(|corner| self.frame.to_space(corner)))
     }
 
+    /// How its loads are booked, and the books. None: they are not.
+    pub fn booked(&self) -> Option<(&WallBookModel, &WallBook)> {
+        Some((self.model.book.as_ref()?, self.book.as_deref()?))
+    }
+
     /// Force, N, and torque about the pivot, N m, on all particles that touch it, awake or asleep.
     pub fn total_load(&self) -> [[f64; 3]; 2] {
         let (awake, asleep) = (&self.push, &self.load_by_sleepers);

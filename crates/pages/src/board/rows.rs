@@ -1,5 +1,6 @@
 //! Rows of the board, from tables of the pages and stored results.
 
+use dem_io::units::significant;
 use serde_json::Value;
 
 use super::times;
@@ -409,21 +410,6 @@ pub(super) fn of_programs() -> Result<Vec<Row>, Failed> {
     Ok(rows)
 }
 
-/// A number with six digits.
-fn six(value: f64) -> String {
-    let digits = if value == 0.0 {
-        0
-    } else {
-        5 - value.abs().log10().floor() as i32
-    };
-    let text = format!("{value:.*}", digits.clamp(0, 12) as usize);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
 /// The round robin of bonded models, as tests/bonded-round-robin/run.py stored it.
 pub(super) fn bonded() -> Result<Vec<Row>, Failed> {
     let stored = read(&root().join("tests/bonded-round-robin/results.json"));
@@ -436,7 +422,7 @@ pub(super) fn bonded() -> Result<Vec<Row>, Failed> {
             let closed = of["closed_form"].as_f64();
             let of_program = |program: &str| {
                 let value = of["values"][program].as_f64()?;
-                Some((format!("{program} {}", six(value)), value))
+                Some((format!("{program} {}", significant(value, 6)), value))
             };
             let others: Vec<_> = ["dem-run, incremental", "LAMMPS", "YADE"]
                 .into_iter()
@@ -448,7 +434,7 @@ pub(super) fn bonded() -> Result<Vec<Row>, Failed> {
             let off = values
                 .map(|value| (ours / value - 1.0).abs())
                 .fold(0.0, f64::max);
-            let closed = closed.map(|value| format!("closed form {}", six(value)));
+            let closed = closed.map(|value| format!("closed form {}", significant(value, 6)));
             let theirs = closed
                 .into_iter()
                 .chain(others.into_iter().map(|(text, _)| text));
@@ -456,7 +442,7 @@ pub(super) fn bonded() -> Result<Vec<Row>, Failed> {
             rows.push(Row {
                 case: format!("[{name}](../bonded-round-robin/README.md): {quantity}"),
                 source: "the same bonds, by each program".to_owned(),
-                ours: six(ours),
+                ours: significant(ours, 6),
                 theirs: theirs.collect::<Vec<_>>().join("; "),
                 error: format!("{off:.1e}"),
                 hardware: format!(

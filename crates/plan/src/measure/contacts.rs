@@ -70,8 +70,8 @@ const fn booked(name: &'static str, read: fn(&Probe, &View<'_>) -> f64) -> Measu
 
 /// The sums of the patches of a wall. None: they are not booked.
 fn books<'a>(probe: &Probe, view: &View<'a>) -> Option<(&'a WallBookModel, PatchBook)> {
-    let wall = view.state.walls.get(probe.walls[0]?)?;
-    Some((wall.model.book.as_ref()?, wall.book.as_ref()?.total()))
+    let (model, book) = view.state.walls.get(probe.walls[0]?)?.booked()?;
+    Some((model, book.total()))
 }
 
 /// Work of the wall on particles since the start, J.

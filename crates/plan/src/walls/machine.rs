@@ -227,8 +227,8 @@ pub(crate) fn crossings(walls: &[Wall]) -> Vec<String> {
 /// revolutions per minute.
 pub(crate) fn shaking(walls: &[Wall]) -> Vec<String> {
     let sentence = |wall: &Wall| {
-        let amplitude_m = 0.5 * stroke_m(wall, 0.0)?;
         let hz = frequency_hz(&wall.model.motion)?;
+        let amplitude_m = 0.5 * stroke_m(wall, 0.0)?;
         let times_gravity = amplitude_m * (TAU * hz).powi(2) / GRAVITY_M_S2;
         (times_gravity > MOST_GRAVITY).then(|| {
             format!(

@@ -48,8 +48,8 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// Removes frame `number` and all after it, with their walls and loads; if it is the first, also the
-    /// walls that never move.
+    /// Removes frame `number` and all after it, with their walls and loads; if it is the first, also
+    /// the walls that never move.
     pub(crate) fn remove_frames_from(&self, number: usize) -> Result<()> {
         self.remove_files(FRAMES, |name| {
             number_in_frames(name).is_some_and(|found| found >= number)

@@ -9,7 +9,7 @@ use dem_results::summary::WallLoadSummary;
 use dem_results::{write_wall_load_cells, write_wall_loads};
 
 use super::last_state::LastState;
-use crate::wall_patches::{Position, turned, wall_book, wall_patches};
+use crate::wall_patches::{Position, turned, wall_patches};
 use dem_engine::state::State;
 use dem_engine::state::walls::Wall;
 use dem_physics::contact::patch_book::PatchBook;
@@ -33,7 +33,7 @@ pub(super) fn wall_loads(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
 /// The sums of each wall that has books, by its name.
 pub(crate) fn wall_load_summary(state: &State) -> BTreeMap<String, WallLoadSummary> {
     let summary = |wall: &Wall| {
-        let (model, book) = wall_book(wall)?;
+        let (model, book) = wall.booked()?;
         let total = turned(&book.total(), &model.start);
         let touched = book.patches().into_iter();
         let touched = touched.filter(|(_, book)| **book != PatchBook::default());

@@ -230,9 +230,9 @@ table_schema! {
     /// A result of the fragments: `d50` and so on are sieve sizes up to which a fraction of the
     /// mass is, of all fragments or of those that left through outlets, to which all fines count.
     new("run_result", Kind::Word(|| words_of(&RUN_RESULTS)));
-    /// A figure of what left through outlets: mass, mean mass flow, mass of the heaviest piece, sieve sizes up to
-    /// which a fraction of the mass is, or the fraction of the mass that passes a `sieve`. Fines
-    /// count as the smallest, unless an outlet is named.
+    /// A figure of what left through outlets: mass, mean mass flow, mass of the heaviest piece,
+    /// sieve sizes up to which a fraction of the mass is, or the fraction of the mass that passes a
+    /// `sieve`. Fines count as the smallest, unless an outlet is named.
     new("discharge", Kind::Word(|| words_of(&DischargeFigure::WORDS)));
     /// The outlet of `discharge`.
     text("outlet", "an outlet of the scene").otherwise("all");

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use dem_run::{State, step};
 
+use crate::verification::contacts::impact::damping_ratio;
 use crate::verification::scene::{place, spin, started, velocity};
 
 /// Number of steps in an impact without damping.
@@ -305,23 +306,4 @@ impl Impact {
     pub(crate) fn lever_error(&self) -> f64 {
         0.5 * self.overlap_m() / self.effective_radius_m()
     }
-}
-
-/// Damping ratio for a restitution, by bisection of the closed form of `doc/inside/contacts.md`.
-pub(crate) fn damping_ratio(restitution: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 100.0);
-    for _ in 0..100 {
-        let zeta: f64 = 0.5 * (low + high);
-        let angle = if zeta < 1.0 {
-            zeta.acos() / (1.0 - zeta * zeta).sqrt()
-        } else {
-            zeta.acosh() / (zeta * zeta - 1.0).sqrt()
-        };
-        if (-2.0 * zeta * angle).exp() > restitution {
-            low = zeta;
-        } else {
-            high = zeta;
-        }
-    }
-    low
 }

@@ -228,7 +228,7 @@ pub(crate) fn elastic() -> [String; 3] {
 }
 
 /// Damping ratio for a restitution, by bisection of the closed form of `doc/inside/contacts.md`.
-fn damping_ratio(restitution: f64) -> f64 {
+pub(crate) fn damping_ratio(restitution: f64) -> f64 {
     let (mut low, mut high) = (0.0, 100.0);
     for _ in 0..100 {
         let zeta: f64 = 0.5 * (low + high);

@@ -23,17 +23,25 @@ pub(super) fn book_patches(
 ) {
     for some in meetings {
         let number = some.of.0;
-        let Some(mut book) = walls[number].book.take() else {
+        if walls[number].book.is_none() {
             continue;
-        };
+        }
         for pair @ (meeting, _) in some.all.iter().zip(&some.met) {
             let step = step(walls, number, (particles, force_n), pair, dt);
             let centre = particles.poses[meeting.particle as usize].place();
             let foot = centre + Vector3::from(meeting.there.normal) * meeting.there.distance_m;
-            let patch = patch_at(&walls[number], foot, meeting.there.normal);
-            book.of(patch).add(&step, kick_s);
+            let wall = &mut walls[number];
+            book(wall, foot, meeting.there.normal, &step, kick_s);
         }
-        walls[number].book = Some(book);
+    }
+}
+
+/// Books what a contact has done in a step before a kick of `kick_s`, s, at a point of a wall, m,
+/// with the normal into it, both in space.
+fn book(wall: &mut Wall, point: Vector3<f64>, inward: [f64; 3], step: &PatchStep, kick_s: f64) {
+    let patch = patch_at(wall, point, inward);
+    if let Some(book) = &mut wall.book {
+        book.of(patch).add(step, kick_s);
     }
 }
 
@@ -87,16 +95,14 @@ pub(super) fn book_sleepers(
 ) {
     for kept in touches {
         let wall = &mut walls[kept.wall];
-        let Some(mut book) = wall.book.take() else {
+        if wall.book.is_none() {
             continue;
-        };
+        }
         let normal = Vector3::from(kept.touch.normal);
         let carried = Vector3::from(wall.model.surface_velocity_m_s) * (time_s - kept.at_s);
         let foot = Vector3::from(wall.frame.to_space(kept.foot_m)) + carried;
         let step = PatchStep::of(&wall.frame, kept.push.force_n.into(), normal);
-        book.of(patch_at(wall, foot, (-normal).into()))
-            .add(&step, kick_s);
-        wall.book = Some(book);
+        book(wall, foot, (-normal).into(), &step, kick_s);
     }
 }
 
@@ -107,14 +113,12 @@ pub(crate) fn book_bridge(
     bridge: &WallBridge,
     kick_s: f64,
 ) {
-    let Some(mut book) = wall.book.take() else {
+    if wall.book.is_none() {
         return;
-    };
+    }
     let pose = &particles.poses[bridge.particle as usize];
     let normal = Vector3::from(bridge.normal);
     let foot = pose.place() - normal * (pose.radius_m() + bridge.gap_m);
     let step = PatchStep::of(&wall.frame, bridge.load.force_n.into(), normal);
-    book.of(patch_at(wall, foot, (-normal).into()))
-        .add(&step, kick_s);
-    wall.book = Some(book);
+    book(wall, foot, (-normal).into(), &step, kick_s);
 }
