@@ -1,7 +1,7 @@
 //! What a second of a process costs, on one thread and on two, and how much bonds only while bodies
-//! can break save: see doc/real-time.md. `cargo bench -p dem-tests --bench process`, then the names
-//! of cases or nothing. A quarter of an hour; with the word `fine` cakes of 2,400 spheres, half an
-//! hour more.
+//! can break save: the table of doc/real-time.md. `cargo bench -p dem-tests --bench process`, then
+//! the names of cases, or `--page FILE` to write it. A quarter of an hour; with the word `fine`, and
+//! for a page, cakes of 2,400 spheres as well, half an hour more.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
@@ -9,6 +9,7 @@
 )]
 
 mod filled;
+mod page;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,10 +20,13 @@ use dem_run::step::step;
 use dem_run::threads::keep_awake;
 
 use self::filled::{packed, shape};
+use self::page::{Table, words};
 
 /// A scene of `data/scenes` whose steps are timed from one time to another.
 struct Case {
     name: &'static str,
+    /// What the table calls it.
+    title: &'static str,
     scene: &'static str,
     set: &'static [&'static str],
     /// s
@@ -35,6 +39,7 @@ struct Case {
 
 const USUAL: Case = Case {
     name: "chute",
+    title: "`chute.toml`: four cakes a second, bonded while they can break",
     scene: "chute",
     set: &[],
     between_s: [0.0, 2.0],
@@ -47,18 +52,21 @@ const FINE: &str = "4.6mm..5.8mm";
 const CASES: [Case; 8] = [
     Case {
         name: "chute-bonded",
+        title: "`chute-bonded.toml`: bonded from the start",
         scene: "chute-bonded",
         beside: None,
         ..USUAL
     },
     Case {
         name: "chute-region",
+        title: "`chute-region.toml`: bonded in a region",
         scene: "chute-region",
         ..USUAL
     },
     USUAL,
     Case {
         name: "five-a-second",
+        title: "`chute.toml` with five cakes a second",
         set: &["inlets.feed.rate=\"5 /s\""],
         between_s: [1.0, 5.0],
         beside: None,
@@ -66,6 +74,7 @@ const CASES: [Case; 8] = [
     },
     Case {
         name: "process",
+        title: "`process.toml`",
         scene: "process",
         between_s: [0.0, 3.0],
         beside: None,
@@ -73,6 +82,7 @@ const CASES: [Case; 8] = [
     },
     Case {
         name: "hundred-lanes",
+        title: "`chute.toml` with a hundred cakes a second on a belt 10 m wide",
         set: &[
             "inlets.feed.rate=\"100 /s\"",
             "walls.belt.box={min=[\"-2.1 m\",\"-5 m\",\"-20 mm\"],max=[\"0 m\",\"5 m\",\"0 m\"]}",
@@ -86,6 +96,7 @@ const CASES: [Case; 8] = [
     },
     Case {
         name: "fine-bonded",
+        title: "`chute-bonded.toml`, cakes of some 2,400 spheres",
         scene: "chute-bonded",
         between_s: [0.0, 0.9],
         beside: None,
@@ -94,6 +105,7 @@ const CASES: [Case; 8] = [
     },
     Case {
         name: "fine",
+        title: "`chute.toml`, cakes of some 2,400 spheres",
         between_s: [0.0, 0.9],
         beside: Some("fine-bonded"),
         diameters: Some(FINE),
@@ -149,29 +161,33 @@ impl Case {
 }
 
 fn main() {
-    let words = std::env::args().skip(1);
-    let asked: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
+    let asked = words();
+    let is_for_page = std::env::args().any(|word| word == "--page");
+    let mut table = Table::new();
     let is_asked = |case: &&Case| match case.diameters {
-        Some(_) => asked.iter().any(|word| word == "fine"),
+        Some(_) => is_for_page || asked.iter().any(|word| word == "fine"),
         None => asked.is_empty() || asked.iter().any(|word| word == case.name),
     };
-    println!(
-        "| scene | steps | bonds broken | run time over simulated time, one thread | times as fast as bonded from the start | two threads: times as fast |"
+    let cases: Vec<&Case> = CASES.iter().filter(is_asked).collect();
+    table.row(
+        "| scene | time | steps | bonds broken | run time over simulated time, one thread | times as fast as bonded from the start | two threads: times as fast |",
     );
-    println!("|---|---|---|---|---|---|");
+    table.row("|---|---|---|---|---|---|---|");
     let mut costs: BTreeMap<&str, f64> = BTreeMap::new();
-    for case in CASES.iter().filter(is_asked) {
+    for case in cases {
         let [one, two] = [1, 2].map(|threads| case.cost(threads));
         costs.insert(case.name, one.per_s);
         let beside = case.beside.and_then(|name| costs.get(name));
         let faster = beside.map_or_else(String::new, |beside| format!("{:.1}", beside / one.per_s));
-        println!(
-            "| `{}` | {} | {} | {:.2} | {faster} | {:.2} |",
-            case.name,
+        let [from_s, to_s] = case.between_s;
+        table.row(&format!(
+            "| {} | {from_s} s to {to_s} s | {} | {} | {:.2} | {faster} | {:.2} |",
+            case.title,
             one.steps,
             one.broken,
             one.per_s,
             one.per_s / two.per_s
-        );
+        ));
     }
+    table.write("process");
 }

@@ -147,16 +147,17 @@ impl<'a> Search<'a> {
     fn among_small(&self, buffers: &mut PairBuffers) {
         list_with_small(self.searched, self.known, buffers);
         let PairBuffers {
+            of_small,
             active,
             grids,
             of_tasks,
             found: all,
             ..
         } = buffers;
-        if active.len() < 2 {
+        if of_small.is_empty() || active.len() < 2 {
             return;
         }
-        grids.fill(active);
+        grids.fill(of_small);
         let chunks = chunks_of(active.len());
         let tasks = in_tasks(chunks.len(), of_tasks, |chunk, task| {
             with_most_lanes(SmallMeetings {

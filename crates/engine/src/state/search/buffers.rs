@@ -101,7 +101,8 @@ impl PairBuffers {
             bytes_of(&task.found) + placed.sum::<usize>()
         };
         let of_tasks: usize = self.of_tasks.iter().map(of_task).sum();
-        let of_balls = bytes_of(&self.small_clusters) + bytes_of(&self.active);
+        let lists = [&self.of_small, &self.active].map(|some| bytes_of(some));
+        let of_balls = bytes_of(&self.small_clusters) + lists.iter().sum::<usize>();
         of_balls + self.grids.bytes() + of_tasks + bytes_of(&self.found)
     }
 }
@@ -135,6 +136,8 @@ pub(crate) struct NearBuffers {
 pub(crate) struct PairBuffers {
     /// Numbers of the small clusters.
     pub(crate) small_clusters: Vec<u32>,
+    /// Balls of small clusters that may be in a pair, and their numbers.
+    pub(crate) of_small: Vec<(u32, Ball)>,
     /// The balls that may be in a pair with one of a small cluster, and their numbers.
     pub(crate) active: Vec<(u32, Ball)>,
     pub(crate) grids: Grids,

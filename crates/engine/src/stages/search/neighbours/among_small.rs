@@ -6,12 +6,12 @@ use dem_physics::geometry::grids::{Grid, Grids};
 use dem_physics::lanes::{LaneWork, Lanes, next_of};
 use dem_physics::number::Vec3;
 
-/// Meetings of some balls with all that are in the grids.
+/// Meetings of some balls with those of small clusters, which are in the grids.
 pub(super) struct SmallMeetings<'a> {
     pub(super) searched: &'a Searched<'a>,
     pub(super) known: &'a KnownClusters,
     pub(super) grids: &'a Grids,
-    /// Balls in the grids, and their numbers.
+    /// Balls of small clusters, and those of large ones near them, with their numbers.
     pub(super) some: &'a [(u32, Ball)],
     /// Their pairs, the smaller number first, sorted.
     pub(super) found: &'a mut Vec<[u32; 2]>,
@@ -22,8 +22,9 @@ impl LaneWork for SmallMeetings<'_> {
     fn with<T: Lanes>(mut self, proof: T::Proof) {
         self.found.clear();
         for &(i, ball) in self.some {
-            if self.searched.is_seeking(i) {
-                self.meet::<T>(proof, i, ball);
+            let is_large = self.is_in_large(i);
+            if is_large || self.searched.is_seeking(i) {
+                self.meet::<T>(proof, i, ball, is_large);
             }
         }
         self.found.sort_unstable_by_key(in_order);
@@ -31,13 +32,14 @@ impl LaneWork for SmallMeetings<'_> {
 }
 
 impl SmallMeetings<'_> {
-    /// Adds the pairs of a ball that seeks. Of two balls that both seek, the one of the level of
-    /// smaller balls adds the pair, within a level the one with the smaller number.
+    /// Adds the pairs of a ball. A ball of a large cluster adds all of its pairs with small ones. Of
+    /// two of small clusters, one that seeks adds the pair; of two that both seek, the one of the
+    /// level of smaller balls, within a level the one with the smaller number.
     #[inline(always)]
-    fn meet<T: Lanes>(&mut self, proof: T::Proof, i: u32, ball: Ball) {
+    fn meet<T: Lanes>(&mut self, proof: T::Proof, i: u32, ball: Ball, is_large: bool) {
         let own = self.grids.level_of(ball[3]);
         for (level, grid) in self.grids.levels().iter().enumerate() {
-            let others_add = level > own && self.searched.seeks.is_none();
+            let others_add = !is_large && level > own && self.searched.seeks.is_none();
             if grid.particles.is_empty() || others_add {
                 continue;
             }
@@ -50,8 +52,13 @@ impl SmallMeetings<'_> {
                             break;
                         }
                         let j = grid.particles[at];
-                        let other_adds = level > own || level == own && j < i;
-                        if self.may_meet([i, j]) && !(other_adds && self.searched.is_seeking(j)) {
+                        let is_added = if is_large {
+                            self.searched.is_seeking(i) || self.searched.is_seeking(j)
+                        } else {
+                            let other_adds = level > own || level == own && j < i;
+                            self.are_apart([i, j]) && !(other_adds && self.searched.is_seeking(j))
+                        };
+                        if is_added {
                             self.found.push([i.min(j), i.max(j)]);
                         }
                     }
@@ -60,12 +67,18 @@ impl SmallMeetings<'_> {
         }
     }
 
-    /// Whether two particles are of different clusters, at least one of which is small.
+    /// Whether a particle is of a large cluster.
     #[inline(always)]
-    fn may_meet(&self, pair: [u32; 2]) -> bool {
+    fn is_in_large(&self, i: u32) -> bool {
+        let cluster = self.searched.clusters[i as usize];
+        !self.known.large.is_empty() && self.known.groups.is_large(cluster)
+    }
+
+    /// Whether two particles are of different clusters.
+    #[inline(always)]
+    fn are_apart(&self, pair: [u32; 2]) -> bool {
         let [of_i, of_j] = pair.map(|i| self.searched.clusters[i as usize]);
-        let is_small = |cluster: u32| !self.known.groups.is_large(cluster);
-        of_i != of_j && (self.known.large.is_empty() || is_small(of_i) || is_small(of_j))
+        of_i != of_j
     }
 }
 

@@ -5,7 +5,8 @@ use crate::state::search::clusters::{KnownClusters, LargeCluster, Searched};
 use dem_physics::geometry::Bounds;
 use dem_physics::geometry::balls::{Ball, around, box_of};
 
-/// Lists the balls that may be in a pair with one of a small cluster, ascending by number.
+/// Lists the balls that may be in a pair with one of a small cluster, ascending by number, and
+/// those of them that are of small clusters.
 pub(super) fn list_with_small(
     searched: &Searched<'_>,
     known: &KnownClusters,
@@ -13,6 +14,7 @@ pub(super) fn list_with_small(
 ) {
     let PairBuffers {
         small_clusters: small,
+        of_small,
         active,
         ..
     } = buffers;
@@ -23,6 +25,7 @@ pub(super) fn list_with_small(
     };
     small.clear();
     small.extend(groups.all().filter(is_small));
+    of_small.clear();
     active.clear();
     if small.is_empty() {
         return;
@@ -32,33 +35,34 @@ pub(super) fn list_with_small(
     let mut where_sought = seeking;
     let sleeps = |large: &LargeCluster| searched.sleeps(groups.members(large.group));
     for large in known.large.iter().filter(|large| !sleeps(large)) {
-        let of_small = if large.seeks { &all } else { &seeking };
-        let common = large.bounds.common(of_small);
+        let others = if large.seeks { &all } else { &seeking };
+        let common = large.bounds.common(others);
         if common == Bounds::EMPTY {
             continue;
         }
         where_sought = where_sought.with(&common);
         active.extend(large.within(&common, balls, groups));
     }
-    let of_small = small.iter().flat_map(|&group| groups.members(group));
-    let of_small = of_small.map(|&i| (i, balls[i as usize]));
+    let members = small.iter().flat_map(|&group| groups.members(group));
+    let members = members.map(|&i| (i, balls[i as usize]));
     // All are given if all seek.
     let may_meet =
         |(_, ball): &(u32, Ball)| searched.seeks.is_none() || around(ball).overlaps(&where_sought);
-    active.extend(of_small.filter(may_meet));
+    of_small.extend(members.filter(may_meet));
+    active.extend_from_slice(of_small);
     active.sort_unstable_by_key(|(i, _)| *i);
 }
 
 /// The box around all of these clusters, and around those that seek.
 fn bounds_of(some: &[u32], known: &KnownClusters, searched: &Searched<'_>) -> [Bounds; 2] {
-    let mut of_small = [Bounds::EMPTY; 2];
+    let mut around_small = [Bounds::EMPTY; 2];
     for &group in some {
         let members = known.groups.members(group);
         let bounds = box_of(members, searched.balls);
-        of_small[0] = of_small[0].with(&bounds);
+        around_small[0] = around_small[0].with(&bounds);
         if members.iter().any(|&i| searched.is_seeking(i)) {
-            of_small[1] = of_small[1].with(&bounds);
+            around_small[1] = around_small[1].with(&bounds);
         }
     }
-    of_small
+    around_small
 }
