@@ -323,7 +323,7 @@ impl Clumps {
     }
 
     /// Number of the clump that carries a particle. None: the particle is free.
-    pub(crate) fn carrier_of(&self, particle: usize) -> Option<usize> {
+    pub fn carrier_of(&self, particle: usize) -> Option<usize> {
         let after = self
             .all
             .partition_point(|clump| clump.first as usize <= particle);

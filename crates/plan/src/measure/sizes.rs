@@ -9,6 +9,7 @@ use dem_results::summary::{RESOLVED_DIAMETERS, SizeSummary, Sizes, Unresolved};
 use rayon::prelude::*;
 
 use dem_engine::state::State;
+use dem_engine::state::clusters::Clusters;
 use dem_engine::state::clusters::sizes::{FragmentSize, size_of};
 use dem_engine::state::model::Model;
 
@@ -24,6 +25,37 @@ const LOCATIONS: [(&str, bool, bool); 3] = [
     ("discharged", true, false),
     ("both", true, true),
 ];
+
+/// Masses and sizes of all present clusters. Clumps of one template have the same size, which is
+/// found once.
+fn sizes_of(state: &State, clusters: &Clusters) -> Vec<FragmentSize> {
+    let clumps = &state.clumps;
+    let template_of = |id: u32| {
+        let carrier = clumps.carrier_of(*clusters.members(id).first()? as usize)?;
+        Some(clumps.all[carrier].template)
+    };
+    let living: Vec<u32> = clusters.living().collect();
+    let mut of_template: BTreeMap<u32, usize> = BTreeMap::new();
+    let mut measured: Vec<u32> = Vec::new();
+    let places = living.iter().map(|&id| {
+        let mut new = || {
+            measured.push(id);
+            measured.len() - 1
+        };
+        match template_of(id) {
+            Some(template) => *of_template.entry(template).or_insert_with(new),
+            None => new(),
+        }
+    });
+    let places: Vec<usize> = places.collect();
+    let size = |id: u32| size_of(id, clusters, &state.particles, clumps);
+    let sizes: Vec<FragmentSize> = measured.into_par_iter().map(size).collect();
+    let whole = living.iter().zip(places).map(|(&id, place)| FragmentSize {
+        body: clusters.history[id as usize].body,
+        ..sizes[place]
+    });
+    whole.collect()
+}
 
 /// Name of all bodies together in the table.
 const ALL: &str = "all";
@@ -46,11 +78,9 @@ impl Fragments {
     /// The fragments of a state. None: nothing can break or touch.
     pub fn of(state: &State) -> Option<Self> {
         let clusters = state.clusters.as_ref()?;
-        let size = |id: u32| size_of(id, clusters, &state.particles, &state.clumps);
         let discharged = state.population.discharged.iter();
-        let living: Vec<u32> = clusters.living().collect();
         let mut fragments = Self {
-            inside: living.into_par_iter().map(size).collect(),
+            inside: sizes_of(state, clusters),
             discharged: discharged.map(|one| one.size).collect(),
             made_from_m: BTreeMap::new(),
         };
