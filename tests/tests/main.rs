@@ -11,6 +11,7 @@ mod notation;
 mod pipe;
 #[cfg(unix)]
 mod readme;
+mod rocks;
 mod shapes;
 mod structure;
 mod verification;

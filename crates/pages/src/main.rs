@@ -25,6 +25,7 @@ mod plots;
 mod pressing;
 mod process;
 mod replacement;
+mod rocks;
 mod round_robin;
 mod self_contact;
 mod shapes;
@@ -41,7 +42,7 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 32] = [
+const COMMANDS: [(&str, Work); 35] = [
     ("board page", board::write),
     ("board penetration", board::penetration),
     ("board times", board::measure),
@@ -63,6 +64,9 @@ const COMMANDS: [(&str, Work); 32] = [
     ("pressing", pressing::pressing),
     ("process", process::process),
     ("replacement", replacement::replacement),
+    ("rocks calibrate", rocks::calibrate),
+    ("rocks load", rocks::load),
+    ("rocks page", rocks::page),
     ("round-robin drum", round_robin::drum),
     ("round-robin penetration", round_robin::penetration),
     ("round-robin silo", round_robin::silo),
@@ -101,7 +105,7 @@ fn work() -> Result<(), Failed> {
         return Err(format!("write one of these, then --resume or nothing:\n{all}").into());
     };
     let subject = words[0].as_str();
-    let builds = !["board page", "board times"].contains(&wanted.as_str());
+    let builds = !["board page", "board times", "rocks page"].contains(&wanted.as_str());
     work(&Bench::new(
         subject,
         resumes || subject == "thesis",

@@ -12,8 +12,12 @@ use crate::table::{Table, write};
 /// Cakes and lumps can break: bodies, and their shapes.
 const BREAKABLE: [(&str, &str); 2] = [("cake", "filter-cake"), ("lump", "bar")];
 /// How they are bonded: words, and the text of their `[replacement]`.
-const WAYS: [(&str, &str); 4] = [
+const WAYS: [(&str, &str); 5] = [
     ("rigid throughout", "{ when = { time = \"1000 s\" } }"),
+    (
+        "replaced from the first touch or a hard hit on, until no bond breaks, as in the scene",
+        "{ when = { touches = \"plate\", principal_stress = \"100 kPa\" }, restore = { unbroken_for = \"5 ms\", min_particles = 2, strain_energy = \"0.1 J/kg\", fluctuation_velocity = \"0.2 m/s\" } }",
+    ),
     (
         "replaced at the plate, and restored behind it",
         "{ when = { enters = \"impact\" }, restore = { leaves = \"impact\", min_particles = 2, strain_energy = \"1 J/kg\", fluctuation_velocity = \"0.2 m/s\" } }",
