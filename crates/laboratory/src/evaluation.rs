@@ -119,6 +119,43 @@ fn name_outliers(evaluated: &mut [EvaluatedSpecimen]) {
     }
 }
 
+/// Dimensions of which one is in another unit: by shape no specimen of its test is so long, wide
+/// or thick.
+fn odd_shape(measured: &MeasuredSpecimen) -> Option<String> {
+    let (what, ratio, usual) = match measured.specimen {
+        // A shear plane has no length.
+        Specimen::Bar { .. } if measured.test == TestType::DirectShear => return None,
+        Specimen::Bar { length_m, area_m2 } => {
+            let usual = match measured.test {
+                TestType::Tension | TestType::DogBone => [0.02, 2000.0],
+                _ => [0.02, 50.0],
+            };
+            (
+                "length over the side of its section",
+                length_m / area_m2.sqrt(),
+                usual,
+            )
+        }
+        Specimen::Beam(beam) => (
+            "width over its height",
+            beam.width_m / beam.height_m,
+            [0.02, 50.0],
+        ),
+        Specimen::Disc {
+            diameter_m,
+            thickness_m,
+        } => (
+            "thickness over its diameter",
+            thickness_m / diameter_m,
+            [0.01, 10.0],
+        ),
+    };
+    let [least, most] = usual;
+    (!(least..=most).contains(&ratio)).then(|| {
+        format!("its {what} is {ratio:.3e} (usual: {least} to {most}): check its dimensions and their units")
+    })
+}
+
 /// Numbers that no material has: a unit or a dimension is wrong.
 fn impossible(
     measured: &MeasuredSpecimen,
@@ -127,7 +164,7 @@ fn impossible(
     travel_at_failure_m: f64,
 ) -> Vec<String> {
     let check = "check the units of travel and force and the dimensions";
-    let mut found = Vec::new();
+    let mut found = Vec::from_iter(odd_shape(measured));
     let (strain, most) = match measured.specimen {
         // A shear plane has no strain.
         Specimen::Bar { .. } if measured.test == TestType::DirectShear => (LEAST_STRAIN, 1.0),

@@ -422,6 +422,47 @@ fn impossible_specimens_are_left_out() {
     }
 }
 
+/// A length in another unit leaves the strain and the modulus of a stiff material possible, but not
+/// the shape.
+#[test]
+fn specimens_of_an_impossible_shape_are_left_out() {
+    let doubts_with = |test: TestType, size: Dimensions| {
+        let mut one = specimen("a", &USUAL);
+        one.test = test;
+        one.specimen = dem_laboratory::Specimen::new(test, &size).unwrap();
+        evaluate(vec![one])[0].doubts.join("; ")
+    };
+    let bar = |length_m: f64| Dimensions {
+        length_m: Some(length_m),
+        area_m2: Some(9e-4),
+        ..Dimensions::default()
+    };
+    let beam = |width_m: f64| Dimensions {
+        width_m: Some(width_m),
+        ..dimensions()
+    };
+    use TestType::{Compression, FourPointBending, Tension};
+    for found in [
+        doubts_with(Compression, bar(0.06)),
+        doubts_with(Tension, bar(35.0)),
+        doubts_with(FourPointBending, beam(0.05)),
+    ] {
+        assert!(!found.contains(" over "), "{found}");
+    }
+    for (found, wanted) in [
+        (
+            doubts_with(Compression, bar(35.0)),
+            "its length over the side of its section is 1.167e3 (usual: 0.02 to 50)",
+        ),
+        (
+            doubts_with(FourPointBending, beam(35.0)),
+            "its width over its height is 1.000e3 (usual: 0.02 to 50)",
+        ),
+    ] {
+        assert!(found.contains(wanted), "{found}");
+    }
+}
+
 /// A specimen 43 % weaker than the others is named; usual scatter is not.
 #[test]
 fn outliers_are_named() {

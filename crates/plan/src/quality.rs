@@ -1,13 +1,14 @@
 //! The quality of bonded bodies: warnings of the programs that made them, those about bodies that
 //! no program has looked at, and bodies with few particles across.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use dem_io::Body;
 use dem_io::body::few_across;
 use dem_io::disjoint::DisjointSets;
 use dem_io::units::significant;
 use dem_scene::{BodySource, Scene};
+use nalgebra::Vector3;
 
 use super::bodies::stays_rigid;
 use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
@@ -16,6 +17,10 @@ use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
 const ENOUGH_BONDS: f64 = 3.0;
 /// A body of fewer spheres is written by hand, and no packing.
 const FEWEST: usize = 20;
+/// Overlap over the smaller radius from which two spheres stand nearly in the same place.
+const DOUBLED: f64 = 1.8;
+/// Length of a bond over that of most others from which it joins no neighbours.
+const FAR: f64 = 3.0;
 /// Width of a chain of spheres over the largest diameter.
 const CHAIN: f64 = 1.05;
 /// Bonds are calibrated for spheres whose mean diameter differs by at most this fraction.
@@ -134,6 +139,8 @@ fn faults(body: &Body) -> Vec<String> {
             count - largest
         ));
     }
+    warnings.extend(doubled(body));
+    warnings.extend(far_bond(body));
     if packing_thickness_m(body).is_none() {
         return warnings;
     }
@@ -145,6 +152,59 @@ fn faults(body: &Body) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// Spheres that stand nearly in the same place as another: their mass counts twice.
+fn doubled(body: &Body) -> Option<String> {
+    let cell_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
+    let cell = |place: &[f64; 3]| place.map(|x| (x / cell_m).floor() as i64);
+    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let (mut first, mut count) = (None, 0);
+    for (i, (place, radius_m)) in body.positions.iter().zip(&body.radii).enumerate() {
+        let [x, y, z] = cell(place);
+        let around =
+            (-1..=1).flat_map(|p| (-1..=1).flat_map(move |q| (-1..=1).map(move |r| [p, q, r])));
+        let near = around.filter_map(|[p, q, r]| cells.get(&[x + p, y + q, z + r]));
+        let other = near.flatten().copied().find(|&j| {
+            let apart_m = (Vector3::from(*place) - Vector3::from(body.positions[j])).norm();
+            let overlap_m = radius_m + body.radii[j] - apart_m;
+            overlap_m > DOUBLED * radius_m.min(body.radii[j])
+        });
+        if let Some(j) = other {
+            first = first.or(Some([j, i]));
+            count += 1;
+        }
+        cells.entry([x, y, z]).or_default().push(i);
+    }
+    let [j, i] = first?;
+    let such = match count {
+        1 => String::new(),
+        many => format!(", the first of {many} such pairs"),
+    };
+    Some(format!(
+        "its particles {j} and {i} stand nearly in the same place{such}: their mass counts twice; remove one of them"
+    ))
+}
+
+/// The bond that is longest beside the others, over the radii of its particles.
+fn far_bond(body: &Body) -> Option<String> {
+    let length = |&[a, b]: &[u32; 2]| {
+        let [a, b] = [a, b].map(|i| i as usize);
+        let apart_m = (Vector3::from(body.positions[a]) - Vector3::from(body.positions[b])).norm();
+        apart_m / (body.radii[a] + body.radii[b])
+    };
+    let mut lengths: Vec<f64> = body.bonds.iter().map(length).collect();
+    let longest = (0..lengths.len()).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b]))?;
+    let (most, [a, b]) = (lengths[longest], body.bonds[longest]);
+    let middle = lengths.len() / 2;
+    let usual = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
+    (most > FAR * usual.max(1.0)).then(|| {
+        format!(
+            "a bond joins particles {a} and {b}, which are {} times the sum of their radii apart, others about {}: they are no neighbours; remove this bond",
+            significant(most, 3),
+            significant(usual, 3)
+        )
+    })
 }
 
 /// A sentence on a packing with few particles across its box.

@@ -12,6 +12,7 @@ use super::walls::{crossings, shaking};
 use dem_engine::check::validity::LARGEST_OVERLAP;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
+use dem_engine::state::contacts::ContactHistory;
 use dem_physics::contact::law::Rolling;
 
 /// Distance of atoms in Tabor's parameter, m.
@@ -21,10 +22,12 @@ const LARGEST_TABOR: f64 = 5.0;
 /// Volume of a liquid bridge over the cube of the radius: up to which its law fits, and above which
 /// it is no bridge but a flood. The first is as written, with room for rounding.
 const LARGEST_BRIDGES: [f64; 2] = [1.001e-3, 0.1];
+/// Largest surface tension that is not questioned, N/m: molten tungsten has 2.5.
+const LARGEST_TENSION_N_M: f64 = 3.0;
 /// Largest coefficient of friction that is not questioned: rubber has about 1.2.
 const LARGEST_FRICTION: f64 = 3.0;
 /// Gravity above which its unit is questioned, m/s2.
-const LARGEST_GRAVITY_M_S2: f64 = 1000.0;
+const LARGEST_GRAVITY_M_S2: f64 = 900.0;
 /// Number of rows of the time series below which a largest value or a mean of them is none.
 const FEWEST_ROWS: f64 = 10.0;
 /// Smallest sieve over the size of the largest body, from which sieves are questioned.
@@ -35,6 +38,7 @@ pub(super) fn doubts(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> Vec
     let mut doubts = unfinished(scene);
     doubts.extend(bridges(scene, state, LARGEST_BRIDGES[1]));
     doubts.extend(sunk(state, bodies));
+    doubts.extend(sunk_in_each_other(state, bodies));
     doubts.extend(too_strong(scene));
     doubts.extend(few_rows(scene));
     doubts.extend(crossings(&state.walls));
@@ -59,6 +63,7 @@ pub(super) fn notes(
     if is_said.is_empty() {
         notes.extend(bridges(scene, state, LARGEST_BRIDGES[0]));
     }
+    notes.extend(surface_tensions(scene));
     notes.extend(frictions(scene));
     notes.extend(gravity(scene));
     notes.extend(too_weak(scene, state, bodies));
@@ -170,6 +175,46 @@ fn sunk(state: &State, bodies: &[PlacedBody]) -> Option<String> {
             significant(z, 4),
         )
     })
+}
+
+/// The spheres of two bodies that are deepest in each other at the start with their overlap as the
+/// origin of their law. Within a body it is the packing's.
+fn sunk_in_each_other(state: &State, bodies: &[PlacedBody]) -> Option<String> {
+    let contacts = state.contacts.as_ref()?;
+    let radius_m = |i: u32| state.particles.poses[i as usize].radius_m();
+    let body_of = |i: u32| bodies.iter().position(|body| body.number_of(i).is_some());
+    let depth = |(pair, history): (&[u32; 2], &ContactHistory)| {
+        let [a, b] = *pair;
+        (history.origin_m() / radius_m(a).min(radius_m(b)), [a, b])
+    };
+    let deep = contacts.pairs.iter().zip(&contacts.histories).map(depth);
+    let deep = deep.filter(|(ratio, _)| *ratio > LARGEST_OVERLAP);
+    let mut deep: Vec<(f64, [u32; 2])> = deep.collect();
+    deep.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let (ratio, [a, b]) = (deep.into_iter())
+        .find(|(_, [a, b])| body_of(*a).is_none() || body_of(*a) != body_of(*b))?;
+    Some(format!(
+        "at the start {} and {} stand {} of a radius in each other, and run.initial_overlap = \"relax\" makes this the origin of their law: overlaps count from there, up to about {LARGEST_OVERLAP} of the radius is usual; move the bodies apart",
+        called(bodies, &state.clumps, a),
+        called(bodies, &state.clumps, b),
+        significant(ratio, 3),
+    ))
+}
+
+/// Surface tensions that no liquid at room temperature has.
+fn surface_tensions(scene: &Scene) -> Vec<String> {
+    let said = scene.contacts.iter().filter_map(|contact| {
+        let tension_n_m = contact.liquid_bridge?.surface_tension_n_m;
+        let [a, b] = &contact.materials;
+        (tension_n_m > LARGEST_TENSION_N_M).then(|| {
+            format!(
+                "contacts.{a}-{b}: a surface tension of {} N/m is {} times that of water, 0.073 N/m: check its unit, a number alone is in N/m",
+                significant(tension_n_m, 3),
+                significant(tension_n_m / 0.073, 3),
+            )
+        })
+    });
+    said.collect()
 }
 
 fn frictions(scene: &Scene) -> Vec<String> {
@@ -284,7 +329,7 @@ fn gravity(scene: &Scene) -> Option<String> {
     let gravity_m_s2 = Vector3::from(scene.run.gravity_m_s2).norm();
     if gravity_m_s2 > LARGEST_GRAVITY_M_S2 {
         return Some(format!(
-            "run.gravity is {} m/s2, {} times that of the earth: check its unit, 9810 mm/s2 are 9.81 m/s2",
+            "run.gravity is {} m/s2, {} times that of the earth: check its unit, 9810 mm/s2 and 981 cm/s2 are 9.81 m/s2",
             significant(gravity_m_s2, 4),
             significant(gravity_m_s2 / 9.81, 3)
         ));

@@ -16,6 +16,8 @@ use dem_plan::measure::{Probe, Settles};
 const LATE: f64 = 0.1;
 /// Range of a measure in that part, over that in the run, above which it still moves.
 const MOVES: f64 = 0.01;
+/// The same of fillings and heaps: an even feed changes them by a tenth.
+const FILLS: f64 = 0.05;
 /// Ratio of the range of a measure to that of others of its unit below which it is rounding; and
 /// lengths over the smallest radius, angles in rad.
 const ROUNDING: [f64; 2] = [1e-6, 1e-9];
@@ -179,7 +181,15 @@ fn settles(probe: &Probe, state: &State, is_held: &[bool]) -> bool {
     match probe.measurement().settles {
         Settles::Never => false,
         Settles::IfHeld => of_servo || of_held(),
-        Settles::Always => true,
+        Settles::Always | Settles::Roughly => true,
+    }
+}
+
+/// Range of a measure in the last tenth of a run, over that in the run, which is allowed.
+fn allowed(probe: &Probe) -> f64 {
+    match probe.measurement().settles {
+        Settles::Roughly => FILLS,
+        _ => MOVES,
     }
 }
 
@@ -217,7 +227,7 @@ fn least_change(probe: &Probe, probes: &[Probe], state: &State) -> f64 {
     };
     floor
         .max(ROUNDING[0] * of_unit)
-        .max(MOVES * range_of_run(probe))
+        .max(allowed(probe) * range_of_run(probe))
 }
 
 fn still_moves(probe: &Probe, range: &Range) -> Option<String> {
@@ -226,9 +236,10 @@ fn still_moves(probe: &Probe, range: &Range) -> Option<String> {
     let unit = probe.unit();
     let share = 100.0 * (range.highest - range.lowest) / range_of_run(probe);
     Some(format!(
-        "measures.{} is read at the end, {value} {unit}, while it still moves: over the last tenth of the run it was between {low} and {high} {unit}, {} % of its range in the run, where 1 % is allowed; set run.end_time later, add damping, or ask for statistic = \"mean\", \"largest\" or \"smallest\"",
+        "measures.{} is read at the end, {value} {unit}, while it still moves: over the last tenth of the run it was between {low} and {high} {unit}, {} % of its range in the run, where {} % is allowed; set run.end_time later, add damping, or ask for statistic = \"mean\", \"largest\" or \"smallest\"",
         probe.name,
         significant(share, 2),
+        100.0 * allowed(probe),
     )
     .replace("  ", " "))
 }

@@ -71,6 +71,23 @@ fn packed_by(history: &PackHistory) -> String {
     format!("spheres scattered at random, largest first, since {front} left too much room")
 }
 
+/// How the spheres came to their places, and the room that is left between them.
+fn packed_by_line(history: &PackHistory) -> String {
+    format!(
+        "packed by        {}; {} left out (too many), {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
+        packed_by(history),
+        history.thinned,
+        history.densify_steps,
+        history.removed,
+        history.void_fillers,
+        match history.voids_left {
+            0 => "0".to_owned(),
+            // Extrapolated from the part that was searched.
+            many => format!("about {many}"),
+        }
+    )
+}
+
 /// The report on a new body in a few lines: its spheres, bonds and mass, and the verdict.
 pub(super) fn short_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
     let quality = &made.quality;
@@ -91,6 +108,10 @@ pub(super) fn short_text(surface: &Surface, made: &BodyReport, output: &Path) ->
         significant(quality.bonds_per_particle, 3)
     );
     text += &format!("filled     {filled:.0} % of the shape{across}\n");
+    if made.history.voids_left > 0 {
+        text += &format!("packing density  {}\n", quality.packing_density());
+        text += &packed_by_line(&made.history);
+    }
     if made.mass.is_some() {
         let [mass, _] = mass_lines(made);
         text += &format!("mass       {mass}\n");
@@ -148,19 +169,7 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
     let [mass, centre] = mass_lines(made);
     text += &format!("mass             {mass}\ncentre           {centre}\n");
     let history = &made.history;
-    text += &format!(
-        "packed by        {}; {} left out (too many), {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
-        packed_by(history),
-        history.thinned,
-        history.densify_steps,
-        history.removed,
-        history.void_fillers,
-        match history.voids_left {
-            0 => "0".to_owned(),
-            // Extrapolated from the part that was searched.
-            many => format!("about {many}"),
-        }
-    );
+    text += &packed_by_line(history);
     text += &format!(
         "time             {seconds:.2} s: front {:.2}, densification {:.2}, voids {:.2}, bonds {:.2}, report {:.2}; {} spheres/s\n",
         history.front_seconds,

@@ -31,6 +31,15 @@ impl Report {
         let line = |(name, what): &Line| format!("{name:width$}  {what}\n");
         lines.iter().map(line).collect()
     }
+
+    /// What the line "packing density" of the report says.
+    pub(crate) fn packing_density(&self) -> String {
+        format!(
+            "{} of the shape is inside spheres, {:.4} at the reduced radii r_gen",
+            with_error(&self.union_density),
+            self.generating_density
+        )
+    }
 }
 
 /// Number and sizes of the particles, and how densely they fill the solid.
@@ -48,12 +57,7 @@ fn density_lines(report: &Report) -> Vec<Line> {
             format!("{} kg/m3", significant(density, 4)),
         ));
     }
-    let packing = format!(
-        "{} of the shape is inside spheres, {:.4} at the reduced radii r_gen",
-        with_error(&report.union_density),
-        report.generating_density
-    );
-    lines.push(("packing density", packing));
+    lines.push(("packing density", report.packing_density()));
     let depth = show_length(report.interior_depth_m);
     let interior = report.interior_union_density.as_ref();
     let interior = match interior.zip(report.interior_generating_density.as_ref()) {

@@ -175,6 +175,26 @@ fn the_summary_goes_where_the_body_does_not() {
     );
 }
 
+/// Room that is left between wide sizes is no detail: without `--verbose` it is reported, too.
+#[test]
+fn the_short_report_has_the_voids_that_are_left() {
+    let bench = Bench::new();
+    let short = |sizes: &str, name: &str| {
+        let output = bench.run(&shape("02"), &["-d", sizes, "-o", name]);
+        assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = short("0.5mm..3mm", "wide.vtp");
+    assert!(text.contains("\npacking density  0."), "{text}");
+    let line = text.lines().find(|line| line.starts_with("packed by"));
+    let line = line.unwrap_or_else(|| panic!("{text}"));
+    let (_, voids) = line.rsplit_once(" added in voids, about ").unwrap();
+    let (voids, _) = voids.split_once(" voids still fit").unwrap();
+    assert!(voids.parse::<u64>().unwrap() > 0, "{line}");
+    let text = short("2mm", "one.vtp");
+    assert!(!text.contains("packed by"), "{text}");
+}
+
 #[test]
 fn the_report_as_json_has_its_keys() {
     let made = Bench::new().pack(

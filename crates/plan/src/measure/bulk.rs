@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::measurement::{IfZero, Measurement};
+use super::measurement::{IfZero, Measurement, Settles};
 use super::probe::Probe;
 use super::spheres::{Sphere, across, spheres};
 use super::view::View;
@@ -34,6 +34,7 @@ pub(super) const MEASUREMENTS: &[Measurement] = &[
         ..Measurement::new("mass", mass_kg)
     },
     Measurement {
+        settles: Settles::Roughly,
         if_zero: IfZero::Doubt(|measure| {
             let (of, within) = (&measure.of, measure.within.as_ref()?);
             Some(format!(
@@ -43,6 +44,7 @@ pub(super) const MEASUREMENTS: &[Measurement] = &[
         ..Measurement::new("bulk_density", density_kg_m3)
     },
     Measurement {
+        settles: Settles::Roughly,
         missing: |probe| {
             let within = probe.measure.within.as_deref().unwrap_or_default();
             let of = &probe.measure.of;

@@ -9,7 +9,7 @@
 
 use nalgebra::Vector3;
 
-use super::measurement::{Measurement, Planned};
+use super::measurement::{Measurement, Planned, Settles};
 use super::probe::Probe;
 use super::spheres::{self, spheres};
 use dem_scene::Measure;
@@ -31,6 +31,7 @@ const ROUND: f64 = 1.6;
 const IN_MIDDLE: f64 = 0.1;
 
 pub(super) const MEASUREMENTS: &[Measurement] = &[Measurement {
+    settles: Settles::Roughly,
     missing: |probe| Some(missing(probe)),
     refusal: |measure, planned| {
         let (count, of) = (few(measure, planned)?, &measure.of);

@@ -44,6 +44,8 @@ pub enum Settles {
     IfHeld,
     /// Yes.
     Always,
+    /// Yes, within some percent: that of a filling or a heap, which may creep.
+    Roughly,
 }
 
 /// What it means that a quantity is 0 throughout a run.

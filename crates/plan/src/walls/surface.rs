@@ -91,7 +91,7 @@ pub(super) fn surface_warnings(surface: &OpenSurface, mesh: &Mesh) -> impl Itera
         ));
     } else if content.unpaired_edges == 0 && surface.is_inside_out {
         odd.push(
-            "the surface is inside out; it pushes on both sides, so nothing changes".to_owned(),
+            "the surface is inside out: what it encloses is room, which inlets fill; it pushes on both sides".to_owned(),
         );
     }
     odd.extend(surface.warnings.iter().cloned());

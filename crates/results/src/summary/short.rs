@@ -100,6 +100,11 @@ impl Summary {
             writeln!(out, "             and {} more", reasons.len() - SHOWN)?;
         }
         self.write_unresolved(out)?;
+        match self.notes.len() {
+            0 => {}
+            1 => writeln!(out, "note         1: see --verbose or the page")?,
+            many => writeln!(out, "notes        {many}: see --verbose or the page")?,
+        }
         writeln!(out, "verdict      {}", self.verdict_text())?;
         if let Some(folder) = &self.results {
             writeln!(

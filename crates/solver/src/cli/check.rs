@@ -197,6 +197,9 @@ fn short(scene: &Scene, plan: &Plan, steps: Steps, bytes: usize, trial: &Trial) 
     line("memory", &format!("about {}", size_text(bytes)));
     line("run time", &(run_time_text(trial) + &trial.pictures_text()));
     line("", VERBOSE);
+    for note in plan.notes.iter().chain(&trial.notes) {
+        line("note", &visible(note));
+    }
     text + &expected_verdict(plan)
 }
 

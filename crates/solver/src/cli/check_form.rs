@@ -6,7 +6,7 @@ use dem_plan::Plan;
 use dem_results::summary::Verdict;
 
 /// Where the rest is.
-pub(super) const VERBOSE: &str = "--verbose prints all values, estimates, stages and notes";
+pub(super) const VERBOSE: &str = "--verbose prints all values, estimates and stages";
 
 /// What `check` prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

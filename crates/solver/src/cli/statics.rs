@@ -75,11 +75,11 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, form: Form) 
         line("memory", &format!("about {}", size_text(bytes)))?;
         if is_whole {
             line("not used", UNUSED)?;
-            for note in &plan.notes {
-                line("note", note)?;
-            }
         } else {
             line("", VERBOSE)?;
+        }
+        for note in &plan.notes {
+            line("note", note)?;
         }
         write!(out, "{}", expected_verdict(plan))
     })

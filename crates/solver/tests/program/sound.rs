@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::Bench;
+use super::{Bench, dem_run};
 
 fn json(bench: &Bench, name: &str, scene: &str) -> Value {
     let path = bench.write(name, scene);
@@ -162,6 +162,44 @@ walls.f = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"w\" 
     // Tabor's parameter is above 5.
     let notes = summary["notes"].to_string();
     assert!(notes.contains("Tabor"), "{notes}");
+    // Of what is unusual, check says everything and a run that there is something.
+    let path = bench.write("swings.toml", scene);
+    let checked = dem_run().arg("check").arg(&path).output().unwrap();
+    let checked = String::from_utf8(checked.stdout).unwrap();
+    let note = "\nnote           contacts.m-w: the law \"dmt\" holds for Tabor's parameter";
+    assert!(checked.contains(note), "{checked}");
+    let said = bench.good(&path, &["--force"]);
+    assert!(said.contains("\nnote         1: see --verbose"), "{said}");
+}
+
+/// Numbers in other units than those that are meant.
+#[test]
+fn unusual_numbers_are_noted() {
+    let bench = Bench::new();
+    let scene = "version = 1
+run = { end_time = 1e-4, gravity = [0, 0, -9.81] }
+materials.m = { density = 2500, young_modulus = 1e7, poisson_ratio = 0.3 }
+contacts.m-m = { restitution = 0.5, liquid_bridge = { surface_tension = 0.073, volume = 1e-13 } }
+bodies.p = { particles = [[0, 0, 0.001, 0.001]], material = \"m\" }
+walls.f = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"m\" }
+";
+    let notes = |scene: &str| json(&bench, "unusual.toml", scene)["notes"].to_string();
+    assert_eq!(notes(scene), "[]");
+    for (from, to, wanted) in [
+        (
+            "= 0.073",
+            "= 73",
+            "a surface tension of 73 N/m is 1000 times that of water",
+        ),
+        (
+            "-9.81",
+            "-981",
+            "run.gravity is 981 m/s2, 100 times that of the earth",
+        ),
+    ] {
+        let found = notes(&scene.replace(from, to));
+        assert!(found.contains(wanted), "{found}");
+    }
 }
 
 /// A damped cantilever that has come to rest, a load that has risen in time, a servo that presses.
