@@ -21,6 +21,8 @@ const FILLS: f64 = 0.05;
 /// Ratio of the range of a measure to that of others of its unit below which it is rounding; and
 /// lengths over the smallest radius, angles in rad.
 const ROUNDING: [f64; 2] = [1e-6, 1e-9];
+/// Change of an angle of repose that one sphere makes, degrees.
+const OF_ONE_SPHERE_DEG: f64 = 0.5;
 /// Mean force of a servo over the demanded one below which it is short of it.
 const SHORT: f64 = 0.9;
 
@@ -208,6 +210,7 @@ fn least_change(probe: &Probe, probes: &[Probe], state: &State) -> f64 {
     let floor = match probe.unit() {
         "m" => small_m,
         "rad" => ROUNDING[1],
+        "deg" => OF_ONE_SPHERE_DEG,
         "m/s" => small_m / state.time_step_s,
         "rad/s" => ROUNDING[1] / state.time_step_s,
         "J" => state.ledger.rounding_floor_j,
