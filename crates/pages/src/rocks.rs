@@ -352,33 +352,43 @@ impl Trend {
     }
 }
 
+/// The stored tests, computed and measured.
+fn stored() -> Result<[Vec<(String, String, Fast)>; 2], Failed> {
+    let computed = [
+        "rock",
+        "eq_20",
+        "strain_rate_1_s",
+        "strength_mpa",
+        "absorbed_j_kg",
+        "coarser_than_6_3_mm",
+        "failed",
+    ];
+    let mut measured = computed;
+    (measured[1], measured[5]) = ("test", "coarser_than_6_3_mm_percent");
+    Ok([read(COMPUTED, computed)?, read(MEASURED, measured)?])
+}
+
+/// Rocks with measured fast tests: name, number of tests, and the means of the strengths computed
+/// by inertia alone at their strain rates, and of those measured, MPa.
+pub(crate) fn strengths_mpa() -> Result<Vec<(&'static str, usize, [f64; 2])>, Failed> {
+    let [computed, measured] = stored()?;
+    let of = |rock: &Rock| {
+        let trend = Trend::of(&broken(&computed, rock.name, "false"), |test| {
+            test.strength_mpa
+        })?;
+        let tests = broken(&measured, rock.name, "SHPB").into_iter();
+        let tests: Vec<Fast> = tests.filter(|test| trend.covers(test.rate_1_s)).collect();
+        let ours: Vec<f64> = tests.iter().map(|test| trend.at(test.rate_1_s)).collect();
+        let theirs: Vec<f64> = tests.iter().map(|test| test.strength_mpa).collect();
+        (!tests.is_empty()).then(|| (rock.name, tests.len(), [mean(&ours), mean(&theirs)]))
+    };
+    Ok(ROCKS.iter().filter_map(of).collect())
+}
+
 /// Writes the tables of the fast tests, the predictions and the plots, from the stored results.
 pub(crate) fn page(_: &Bench) -> Result<(), Failed> {
     let [_, mut compared, mut predicted] = tables();
-    let computed = read(
-        COMPUTED,
-        [
-            "rock",
-            "eq_20",
-            "strain_rate_1_s",
-            "strength_mpa",
-            "absorbed_j_kg",
-            "coarser_than_6_3_mm",
-            "failed",
-        ],
-    )?;
-    let measured = read(
-        MEASURED,
-        [
-            "rock",
-            "test",
-            "strain_rate_1_s",
-            "strength_mpa",
-            "absorbed_j_kg",
-            "coarser_than_6_3_mm_percent",
-            "failed",
-        ],
-    )?;
+    let [computed, measured] = stored()?;
     let mut text = "rock,bonds,strain_rate_1_s,strength_mpa,lowest_mpa,highest_mpa\n".to_owned();
     for rock in &ROCKS {
         let own =

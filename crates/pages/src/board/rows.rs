@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::times;
 use crate::bench::{Failed, number, read, root};
 use crate::cells::change;
+use crate::rocks::strengths_mpa;
 use crate::table::rows as table_rows;
 
 /// A claim.
@@ -254,6 +255,19 @@ fn picked(pick: &Pick) -> Result<Row, Failed> {
 
 pub(super) fn measured() -> Result<Vec<Row>, Failed> {
     MEASURED.iter().map(picked).collect()
+}
+
+/// Mean strengths of rocks between bars, predicted from slow tests.
+pub(super) fn of_rocks() -> Result<Vec<Row>, Failed> {
+    let rows = strengths_mpa()?.into_iter().map(|(rock, count, [ours, theirs])| Row {
+        case: format!("[{rock} between bars, bonds calibrated on slow tests: mean strength of {count} tests, MPa](rocks.md)"),
+        source: "Rae et al. 2020".to_owned(),
+        ours: format!("{ours:.1}"),
+        theirs: format!("{theirs:.1}"),
+        error: change(ours / theirs - 1.0, 1),
+        ..Row::default()
+    });
+    Ok(rows.collect())
 }
 
 /// A deviation that a table has in one of its rows.
