@@ -9,11 +9,13 @@
 //! surfaces that planes cannot stand for need that of 4 July 2026 with GRANSURF.
 
 pub mod bonds;
+mod breaks;
 mod clumps;
 mod contacts;
 mod data;
 pub(crate) mod dump;
 mod duration;
+mod exported;
 mod feeds;
 pub(crate) mod files;
 mod forces;
@@ -22,7 +24,9 @@ mod input;
 mod input_walls;
 mod molecules;
 mod page;
+mod pieces;
 pub mod refusals;
+mod results;
 mod surfaces;
 mod wall_motion;
 mod walls;
@@ -37,8 +41,11 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 use serde::Serialize;
 
-use self::files::{CLUMPS, DATA, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES};
+use self::files::{
+    CLUMPS, DATA, ExportedBody, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES,
+};
 use self::refusals::Refusals;
+use dem_engine::state::model::NamedBody;
 use dem_plan::Plan;
 
 /// Counts of what has been written, and what it needs.
@@ -93,17 +100,13 @@ pub fn export(
         scene: scene.source.clone(),
         steps,
         end_s: scene.run.end_time_s,
-        body_names: plan
-            .state
-            .model
-            .bodies
-            .iter()
-            .map(|b| b.name.clone())
-            .collect(),
+        bodies: plan.state.model.bodies.iter().map(exported_body).collect(),
         body_of_molecule: molecules.bodies.clone(),
         is_clump: molecules.are_clumps.clone(),
         fed: feeds.iter().map(|feed| fed_body(plan, feed)).collect(),
         bond_radii_m: types.types.iter().map(|one| one.radius_m).collect(),
+        breaks: types.break_at_all(),
+        sieves_m: (scene.output.as_ref()).map_or_else(Vec::new, |o| o.sieves_m.clone()),
     };
     let texts = [(INPUT, input.text()), (PAGE, page::page(&input))];
     in_new_folder(folder, |folder| {
@@ -146,6 +149,17 @@ pub fn export(
         steps,
         needs: page::needs(&walls),
     })
+}
+
+fn exported_body(body: &NamedBody) -> ExportedBody {
+    ExportedBody {
+        name: body.name.clone(),
+        material: body.material.clone(),
+        sieve_m: body.sieve_m,
+        smallest_diameter_m: body.smallest_diameter_m,
+        mean_diameter_m: body.mean_diameter_m,
+        fine_fraction: body.fine_fraction,
+    }
 }
 
 fn fed_body(plan: &Plan, feed: &feeds::Feed) -> FedBody {
