@@ -40,9 +40,10 @@ impl Input<'_> {
         self.add_interactions(&mut text);
         self.add_groups(&mut text);
         self.add_motion(&mut text);
-        // Damping and supports are to know the forces of walls.
+        self.add_loads(&mut text);
         self.add_walls(&mut text);
-        self.add_forces(&mut text);
+        // A fix that holds particles comes after all that push them.
+        self.add_supports(&mut text);
         self.add_output(&mut text);
         self.add_runs(&mut text);
         text
@@ -334,7 +335,7 @@ impl Input<'_> {
         );
     }
 
-    fn add_forces(&self, text: &mut String) {
+    fn add_loads(&self, text: &mut String) {
         for (number, load) in (1..).zip(&self.forces.loads) {
             Self::line(text, format!("# load {}", load.name));
             for (axis, formula) in ["x", "y", "z"].into_iter().zip(&load.formulas) {
@@ -357,6 +358,9 @@ impl Input<'_> {
                 format!("fix damping all damping/cundall {damping:e} {damping:e}"),
             );
         }
+    }
+
+    fn add_supports(&self, text: &mut String) {
         for (number, support) in (1..).zip(&self.forces.supports) {
             Self::line(text, format!("# support {}", support.name));
             let name = format!("support_{number}");

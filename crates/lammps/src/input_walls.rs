@@ -86,6 +86,9 @@ impl Input<'_> {
             let moves = (motion.iter()).map(|how| format!("fix_modify {id} move 1 {how}"));
             lines.extend(moves);
         }
+        if lines.is_empty() {
+            return;
+        }
         let Ok(planes) = &surface.planes else {
             for line in lines {
                 Self::line(text, line);
