@@ -413,7 +413,7 @@ class Runs:
                 if any(one[atom][key] != row[key] for key in ["x", "y", "z", "vx"]):
                     fail(f"{imported}: atom {atom} is elsewhere")
         run([program, "picture", imported, "-o", os.path.join(imported, "..", "last.png")])
-        run([program, "fragment", imported, "--largest", "-o", os.path.join(imported, "..", "piece.vtp"), "-q"])
+        run([program, "fragment", imported, "--all", "--stl", "-o", os.path.join(imported, "..", f"pieces-{os.path.basename(imported)}"), "-q"])
         if not os.path.exists(os.path.join(imported, "report.html")):
             fail(f"{imported}: no page")
 

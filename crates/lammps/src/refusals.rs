@@ -46,6 +46,11 @@ impl Refusals {
         }
     }
 
+    /// Puts the last ones, from this number on, before all others.
+    fn put_first(&mut self, from: usize) {
+        self.0.rotate_left(from);
+    }
+
     /// One error with what is to be done about each of them, in the order of their places, and why.
     /// `place_of`: file and line of a key such as `walls.plate`, if it is written.
     pub fn check(&self, scene: &Scene, place_of: &dyn Fn(&str) -> Option<String>) -> Result<()> {
@@ -96,7 +101,10 @@ pub(super) fn refuse(scene: &Scene, plan: &Plan, refusals: &mut Refusals) {
         refusals.add("[inlets]", why, remedy);
     }
     if plan.state.contacts.is_some() {
+        // It is packed again before anything else is tried.
+        let known = refusals.0.len();
         refuse_overlaps(plan, refusals);
+        refusals.put_first(known);
     }
 }
 
@@ -186,7 +194,7 @@ fn refuse_overlaps(plan: &Plan, refusals: &mut Refusals) {
         let part = format!("[bodies.{}]", body.name);
         if count > 0 {
             let why = format!(
-                "{} of its particles overlap where a bond joins them, and when it breaks they would fly apart: contact laws that begin at an overlap",
+                "{} of its particles overlap where a bond joins them, and its contact laws, which begin at no overlap, would push them apart when it breaks",
                 counted(count, "pair")
             );
             let remedy =

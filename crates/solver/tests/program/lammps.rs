@@ -3,6 +3,7 @@
 mod dumps;
 mod fed;
 mod refusals;
+mod stored;
 mod surfaces;
 
 use std::collections::BTreeMap;

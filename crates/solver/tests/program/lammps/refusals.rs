@@ -193,14 +193,14 @@ fn all_refusals_are_in_one_message_with_what_to_do_first_and_their_lines() {
     assert!(said.starts_with(head), "{said}");
     let line = |text: &str| 1 + scene.lines().position(|line| line.contains(text)).unwrap();
     for (number, text, part, todo, limit) in [
-        (1, "[sleep]", "[sleep]", "leave it out", "bodies that sleep"),
         (
-            2,
+            1,
             "[bodies.pair]",
             "[bodies.pair]",
             "pack it without overlap (dem-pack --overlap 0)",
             "1 pair of its particles overlap",
         ),
+        (2, "[sleep]", "[sleep]", "leave it out", "bodies that sleep"),
         (
             3,
             "von_mises",
