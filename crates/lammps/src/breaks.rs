@@ -38,8 +38,9 @@ pub(super) fn breaks_until(
     for row in &section.rows {
         let [at, a, b, x, y, z] = columns.map(|column| row[column]);
         let bond = exported.bond_between([a, b], &section)?;
-        let is_in_time =
-            at >= 0.0 && at <= section.step as f64 && before.is_none_or(|before| at > before as f64);
+        let is_in_time = at >= 0.0
+            && at <= section.step as f64
+            && before.is_none_or(|before| at > before as f64);
         if at.fract() != 0.0 || !is_in_time {
             let problem = format!("the bond of the atoms {a} and {b} broke in step {at}");
             return Err(section.refused(problem, AGAIN));

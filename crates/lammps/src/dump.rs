@@ -25,10 +25,7 @@ pub(crate) struct Section {
 
 impl Section {
     /// The numbers of the columns with these names.
-    pub(crate) fn find<const N: usize>(
-        &self,
-        names: [impl AsRef<str>; N],
-    ) -> Result<[usize; N]> {
+    pub(crate) fn find<const N: usize>(&self, names: [impl AsRef<str>; N]) -> Result<[usize; N]> {
         let mut found = [0; N];
         for (slot, name) in found.iter_mut().zip(&names) {
             let name = name.as_ref();

@@ -93,9 +93,15 @@ pub(super) fn read_data(path: &Path) -> Result<Exported> {
         }
     }
     let numbers = 0..exported.bonds.len();
-    exported.bond_of = numbers.clone().map(|at| (exported.atoms_of(at), at)).collect();
+    exported.bond_of = numbers
+        .clone()
+        .map(|at| (exported.atoms_of(at), at))
+        .collect();
     for (id, molecule) in exported.ids.iter().zip(&exported.molecules) {
-        exported.first_of.entry(*molecule).or_insert((*id, usize::MAX));
+        exported
+            .first_of
+            .entry(*molecule)
+            .or_insert((*id, usize::MAX));
     }
     for at in numbers {
         let molecule = exported.molecule_of(at);
@@ -237,7 +243,11 @@ impl Exported {
 }
 
 /// Refuses a data file and a description that do not belong together.
-pub(super) fn refuse_strangers(folder: &Path, manifest: &Manifest, exported: &Exported) -> Result<()> {
+pub(super) fn refuse_strangers(
+    folder: &Path,
+    manifest: &Manifest,
+    exported: &Exported,
+) -> Result<()> {
     let molecules = manifest.body_of_molecule.len();
     let is_known = |molecule: &u32| (1..=molecules).contains(&(*molecule as usize));
     let bodies = manifest.bodies.len();
@@ -259,4 +269,3 @@ pub(super) fn refuse_strangers(folder: &Path, manifest: &Manifest, exported: &Ex
         "export the scene again",
     ))
 }
-

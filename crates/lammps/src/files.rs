@@ -73,6 +73,8 @@ impl Manifest {
             sizes[*molecule as usize - 1] += 1;
         }
         let clumps = self.is_clump.iter().zip(sizes);
-        clumps.filter(|(is_clump, size)| **is_clump && *size > 1).count()
+        clumps
+            .filter(|(is_clump, size)| **is_clump && *size > 1)
+            .count()
     }
 }

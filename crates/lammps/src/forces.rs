@@ -83,10 +83,7 @@ pub(super) fn rate(factor: &Factor) -> String {
         Factor::Table(points) => {
             let slope = |pair: &[[f64; 2]]| {
                 let [[t0, f0], [t1, f1]] = [pair[0], pair[1]];
-                format!(
-                    "(time>={t0:e})*(time<{t1:e})*({:e})",
-                    (f1 - f0) / (t1 - t0)
-                )
+                format!("(time>={t0:e})*(time<{t1:e})*({:e})", (f1 - f0) / (t1 - t0))
             };
             let slopes: Vec<String> = points.windows(2).map(slope).collect();
             match slopes.is_empty() {

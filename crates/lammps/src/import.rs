@@ -85,8 +85,13 @@ impl Run {
         let has_bonds = !self.exported.bonds.is_empty();
         let breaks = has_bonds && self.manifest.breaks;
         let mut inputs = [
-            Some(open(frames_path, "run the exported script with LAMMPS first")?),
-            has_bonds.then(|| open(bonds_path, KEEP_DUMPS)).transpose()?,
+            Some(open(
+                frames_path,
+                "run the exported script with LAMMPS first",
+            )?),
+            has_bonds
+                .then(|| open(bonds_path, KEEP_DUMPS))
+                .transpose()?,
             breaks.then(|| open(broken_path, KEEP_DUMPS)).transpose()?,
         ];
         let [frames, bonds, broken] = &mut inputs;

@@ -162,5 +162,6 @@ impl Input<'_> {
 
 /// Whether a wall cannot be written without surfaces.
 pub(super) fn needs_surfaces(wall: &WrittenWall) -> bool {
-    wall.surface().is_some_and(|surface| surface.planes.is_err())
+    wall.surface()
+        .is_some_and(|surface| surface.planes.is_err())
 }

@@ -41,9 +41,7 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 use serde::Serialize;
 
-use self::files::{
-    CLUMPS, DATA, ExportedBody, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES,
-};
+use self::files::{CLUMPS, DATA, ExportedBody, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES};
 use self::refusals::Refusals;
 use dem_engine::state::model::NamedBody;
 use dem_plan::Plan;

@@ -74,7 +74,9 @@ impl Pieces {
         }
         add_spheres(&mut self.state.particles, exported, new.clone());
         for ends in holding(manifest, exported, new.clone()) {
-            self.state.bonds.push(ends, [1.0, 0.0, 0.0], 1.0, &JOINED, 0);
+            self.state
+                .bonds
+                .push(ends, [1.0, 0.0, 0.0], 1.0, &JOINED, 0);
         }
         if let Some(clusters) = &mut self.state.clusters {
             clusters.extend(time_s, new.end, &self.state.bonds);

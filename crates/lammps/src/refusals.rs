@@ -111,8 +111,14 @@ pub(super) fn refuse(scene: &Scene, plan: &Plan, refusals: &mut Refusals) {
 /// The tables and keys of a scene that are not exported, known before it is planned.
 pub fn refuse_parts(scene: &Scene) -> Refusals {
     let first = |names: Option<&String>| names.cloned().unwrap_or_default();
-    let bonded_within = scene.bodies.iter().find(|(_, body)| body.bonded_within.is_some());
-    let beside_bond = scene.bonds.iter().find(|(_, bond)| bond.contact_beside_bond);
+    let bonded_within = scene
+        .bodies
+        .iter()
+        .find(|(_, body)| body.bonded_within.is_some());
+    let beside_bond = scene
+        .bonds
+        .iter()
+        .find(|(_, bond)| bond.contact_beside_bond);
     let run_it = "leave it out, or run the scene with dem-run";
     let parts = [
         (

@@ -43,7 +43,10 @@ fn keys_are_found_in_the_file_or_among_the_options() {
         ("contacts.plate-coarse-grain", None),
         ("walls.other", None),
         ("sleep", None),
-        ("run.gravity", Some("--set run.gravity=[0, 0, -1]".to_owned())),
+        (
+            "run.gravity",
+            Some("--set run.gravity=[0, 0, -1]".to_owned()),
+        ),
         (
             "bonds.grain.model",
             Some(format!("{}:3", included.display())),

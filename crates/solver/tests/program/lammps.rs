@@ -66,8 +66,12 @@ impl Export {
         for line in text("in.lammps").lines() {
             // Commands of an if are quoted, and it goes on.
             let line = line.split('#').next().unwrap();
-            let quoted = line.strip_prefix("  \"").map(|line| line.trim_end_matches(" &"));
-            let command = quoted.and_then(|line| line.strip_suffix('"')).unwrap_or(line);
+            let quoted = line
+                .strip_prefix("  \"")
+                .map(|line| line.trim_end_matches(" &"));
+            let command = quoted
+                .and_then(|line| line.strip_suffix('"'))
+                .unwrap_or(line);
             let words = command.split_whitespace();
             export.script.push(words.map(str::to_owned).collect());
         }

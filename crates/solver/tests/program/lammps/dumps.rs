@@ -48,7 +48,8 @@ fn dumps_become_frames_with_a_page_fragments_and_pictures() {
     exported(&bench, "scene.toml");
     write_dumps(&bench);
     let done = go(&bench, &["import", "out", "-o", "back"]);
-    let said = "2 frames, the last at 0.0010000000000000002 s, 1 broken bond, 2 fragments -> back\n";
+    let said =
+        "2 frames, the last at 0.0010000000000000002 s, 1 broken bond, 2 fragments -> back\n";
     assert_eq!(String::from_utf8_lossy(&done.stdout), said);
     let frame =
         |n: usize| read_particles(&bench.path(&format!("back/frames/frame_{n:06}.vtp"))).unwrap();
@@ -78,7 +79,12 @@ fn dumps_become_frames_with_a_page_fragments_and_pictures() {
     }
     let page = fs::read_to_string(bench.path("back/report.html")).unwrap();
     assert!(page.contains("computed by LAMMPS") && page.contains("id=\"view-data\""));
-    for part in ["broken bonds", "largest fragment", "simulated by LAMMPS", "Curves"] {
+    for part in [
+        "broken bonds",
+        "largest fragment",
+        "simulated by LAMMPS",
+        "Curves",
+    ] {
         assert!(page.contains(part), "{part}");
     }
     for part in ["Errors and run time", "0 threads"] {
@@ -123,7 +129,12 @@ fn check_tables(bench: &Bench) {
     near(number(2, "mass_kg"), b);
     near(number(2, "y_m"), 0.1);
     near(number(2, "wz_rad_s"), 6.0);
-    for (name, wanted) in [("parent_id", "0"), ("fx_n", ""), ("body", "pair"), ("material", "grain")] {
+    for (name, wanted) in [
+        ("parent_id", "0"),
+        ("fx_n", ""),
+        ("body", "pair"),
+        ("material", "grain"),
+    ] {
         assert_eq!(cell(2, name), wanted, "{name}");
     }
     let summary = fs::read_to_string(bench.path("back/summary.json")).unwrap();
@@ -133,11 +144,17 @@ fn check_tables(bench: &Bench) {
     assert_eq!(summary["fragments"]["splits"], 1);
     let share = summary["fragments"]["mass_fraction_of_largest"].as_f64();
     near(share.unwrap(), b / (a + b));
-    near(summary["sizes"]["all"]["both"]["d80_m"].as_f64().unwrap(), 0.01);
+    near(
+        summary["sizes"]["all"]["both"]["d80_m"].as_f64().unwrap(),
+        0.01,
+    );
     assert!(summary.get("energy_error").is_none());
     assert!(bench.path("back/distribution.csv").exists());
     for plot in ["broken_bonds", "fragments", "fragment_sizes"] {
-        assert!(bench.path(&format!("back/plots/{plot}.svg")).exists(), "{plot}");
+        assert!(
+            bench.path(&format!("back/plots/{plot}.svg")).exists(),
+            "{plot}"
+        );
     }
 }
 
@@ -145,7 +162,9 @@ fn check_tables(bench: &Bench) {
 fn broken_early(broken: &str, row: &str) -> String {
     let second = broken.rfind("ITEM: TIMESTEP").unwrap();
     let first = broken[..second].replace("ENTRIES\n0\n", "ENTRIES\n1\n");
-    let rest = broken[second..].replace("ENTRIES\n1\n", "ENTRIES\n0\n").replace(row, "");
+    let rest = broken[second..]
+        .replace("ENTRIES\n1\n", "ENTRIES\n0\n")
+        .replace(row, "");
     format!("{first}{}{rest}", row.replace("950", "0"))
 }
 
@@ -243,7 +262,10 @@ fn damaged_dumps_and_folders_without_are_refused() {
             "bonds.dump: step 0: there is no column 'c_bonds[2]'",
         ),
         (
-            bonds.replacen("ENTRIES\n1\n", "ENTRIES\n0\n", 1).replace("1 2 1 1 \n", "").as_str(),
+            bonds
+                .replacen("ENTRIES\n1\n", "ENTRIES\n0\n", 1)
+                .replace("1 2 1 1 \n", "")
+                .as_str(),
             "the bond of the atoms 1 and 2, which particles.data has, is missing, and broken.dump has not that it broke",
         ),
     ] {
@@ -253,13 +275,41 @@ fn damaged_dumps_and_folders_without_are_refused() {
     bench.write("out/bonds.dump", &bonds);
     let broken = read("out/broken.dump");
     for (old, new, expected) in [
-        ("f_broken[3]", "f_other[3]", "there is no column 'f_broken[3]'"),
-        ("950 2 1", "950 2 7", "particles.data has no bond of the atoms 2 and 7"),
-        ("950 2 1", "950 2.5 1", "particles.data has no bond of the atoms 1 and 2.5"),
-        ("950 2 1", "950 -2 1", "particles.data has no bond of the atoms -2 and 1"),
-        ("950 2 1", "0 2 1", "the bond of the atoms 2 and 1 broke in step 0"),
-        ("950 2 1", "1001 2 1", "the bond of the atoms 2 and 1 broke in step 1001"),
-        ("950 2 1", "949.5 2 1", "the bond of the atoms 2 and 1 broke in step 949.5"),
+        (
+            "f_broken[3]",
+            "f_other[3]",
+            "there is no column 'f_broken[3]'",
+        ),
+        (
+            "950 2 1",
+            "950 2 7",
+            "particles.data has no bond of the atoms 2 and 7",
+        ),
+        (
+            "950 2 1",
+            "950 2.5 1",
+            "particles.data has no bond of the atoms 1 and 2.5",
+        ),
+        (
+            "950 2 1",
+            "950 -2 1",
+            "particles.data has no bond of the atoms -2 and 1",
+        ),
+        (
+            "950 2 1",
+            "0 2 1",
+            "the bond of the atoms 2 and 1 broke in step 0",
+        ),
+        (
+            "950 2 1",
+            "1001 2 1",
+            "the bond of the atoms 2 and 1 broke in step 1001",
+        ),
+        (
+            "950 2 1",
+            "949.5 2 1",
+            "the bond of the atoms 2 and 1 broke in step 949.5",
+        ),
         ("950 2 1", "nan 2 1", "'nan' is not a finite number"),
         ("STEP\n1000", "STEP\n999", "frames.dump has step 1000 there"),
         (
@@ -273,16 +323,24 @@ fn damaged_dumps_and_folders_without_are_refused() {
         bad(expected);
     }
     let row = "950 2 1 0.0045 0.05 0.02 \n";
-    let twice = broken.replace("ENTRIES\n1\n", "ENTRIES\n2\n").replace(row, &row.repeat(2));
+    let twice = broken
+        .replace("ENTRIES\n1\n", "ENTRIES\n2\n")
+        .replace(row, &row.repeat(2));
     bench.write("out/broken.dump", twice);
     bad("the bond of the atoms 2 and 1 breaks twice");
-    let never = broken.replace("ENTRIES\n1\n", "ENTRIES\n0\n").replace(row, "");
+    let never = broken
+        .replace("ENTRIES\n1\n", "ENTRIES\n0\n")
+        .replace(row, "");
     bench.write("out/broken.dump", never);
-    bad("bonds.dump: step 1000: the bond of the atoms 1 and 2, which particles.data has, is missing");
+    bad(
+        "bonds.dump: step 1000: the bond of the atoms 1 and 2, which particles.data has, is missing",
+    );
     // The break stands in the first section.
     let early = broken_early(&broken, row);
     bench.write("out/broken.dump", early);
-    bad("bonds.dump: step 0: the bond of the atoms 1 and 2 is there, and broken.dump has it broken");
+    bad(
+        "bonds.dump: step 0: the bond of the atoms 1 and 2 is there, and broken.dump has it broken",
+    );
     fs::remove_file(bench.path("out/broken.dump")).unwrap();
     bad("broken.dump: cannot be read");
     bench.write("out/broken.dump", &broken);
@@ -304,7 +362,10 @@ fn damaged_dumps_and_folders_without_are_refused() {
         bench.write("out/broken.dump", broken);
         let done = go(&bench, &["import", "out", "-o", "back", "--force"]);
         let said = String::from_utf8_lossy(&done.stdout).into_owned();
-        assert_eq!(said, "1 frame, the last at 0 s, 0 broken bonds, 1 fragment -> back\n");
+        assert_eq!(
+            said,
+            "1 frame, the last at 0 s, 0 broken bonds, 1 fragment -> back\n"
+        );
         let warned = String::from_utf8_lossy(&done.stderr).into_owned();
         assert!(
             warned.contains("the frames end at 0 s, the run of the scene at"),

@@ -176,8 +176,14 @@ fn all_refusals_are_in_one_message_with_what_to_do_first_and_their_lines() {
     let mut scene = SCENE.to_owned();
     for (old, new) in [
         ("[0.0091, 0, 0.02", "[0.0089, 0, 0.02"),
-        ("friction = 0.3 }", "friction = 0.3, rolling_friction = 0.1 }"),
-        ("tensile_strength = \"1 MPa\"", "von_mises_strength = \"1 MPa\""),
+        (
+            "friction = 0.3 }",
+            "friction = 0.3, rolling_friction = 0.1 }",
+        ),
+        (
+            "tensile_strength = \"1 MPa\"",
+            "von_mises_strength = \"1 MPa\"",
+        ),
         ("fixed = true", "fixed = [\"x\"]"),
         ("[output]", "[sleep]\nspeed = \"1 mm/s\"\n[output]"),
         ("ramp = \"2 ms\"", "table = [[0, 0], [\"1 ms\", 1]]"),
@@ -231,7 +237,10 @@ fn all_refusals_are_in_one_message_with_what_to_do_first_and_their_lines() {
         ),
     ] {
         let item = format!("{number}. scene.toml:{}: {part}: {todo}", line(text));
-        assert!(said.contains(&item) && said.contains(limit), "{item}: {said}");
+        assert!(
+            said.contains(&item) && said.contains(limit),
+            "{item}: {said}"
+        );
     }
     assert!(!said.contains("7. "), "{said}");
     assert!(!bench.path("out").exists());
@@ -240,7 +249,10 @@ fn all_refusals_are_in_one_message_with_what_to_do_first_and_their_lines() {
     let set = "--set=supports.hold.end=5 ms";
     let said = refused_export(&bench, &["scene.toml", set]);
     let begin = "error: scene.toml:";
-    assert!(said.starts_with(begin) && said.contains("[supports.hold]: leave end out"), "{said}");
+    assert!(
+        said.starts_with(begin) && said.contains("[supports.hold]: leave end out"),
+        "{said}"
+    );
     let set = "--set=run.initial_overlap=relax";
     let said = refused_export(&bench, &["scene.toml", set]);
     let begin = "error: --set run.initial_overlap=relax: run.initial_overlap = \"relax\": move";

@@ -29,7 +29,10 @@ fn breakage(bench: &Bench, results: &str) -> (Vec<(String, f64)>, Vec<String>) {
 #[test]
 fn what_lammps_broke_is_what_a_run_breaks() {
     let bench = Bench::new();
-    bench.write("scene.toml", fs::read_to_string(stored("scene.toml")).unwrap());
+    bench.write(
+        "scene.toml",
+        fs::read_to_string(stored("scene.toml")).unwrap(),
+    );
     exported(&bench, "scene.toml");
     for name in ["frames.dump", "bonds.dump", "broken.dump"] {
         fs::copy(stored(name), bench.path(&format!("out/{name}"))).unwrap();
@@ -47,7 +50,10 @@ fn what_lammps_broke_is_what_a_run_breaks() {
     for ((bond, at_s), (wanted, wanted_s)) in found.iter().zip(&ours) {
         // Steps of 0.5 us, in which damping of LAMMPS is of first order.
         assert_eq!(bond, wanted);
-        assert!((at_s / wanted_s - 1.0).abs() < 0.01, "{bond}: {at_s} {wanted_s}");
+        assert!(
+            (at_s / wanted_s - 1.0).abs() < 0.01,
+            "{bond}: {at_s} {wanted_s}"
+        );
     }
     assert_eq!(splits, our_splits);
     assert_eq!(splits, ["26 + 1 particles)\",,", "25 + 1 particles)\",,"]);
@@ -64,7 +70,9 @@ fn what_lammps_broke_is_what_a_run_breaks() {
         let (columns, rows) = table(&bench.path(&format!("{results}/fragments.csv")));
         let at = |name: &str| columns.iter().position(|column| column == name).unwrap();
         let last = rows.iter().rev();
-        let most = last.take(3).max_by_key(|row| row[at("particles")].parse::<u32>().unwrap());
+        let most = last
+            .take(3)
+            .max_by_key(|row| row[at("particles")].parse::<u32>().unwrap());
         let row = most.unwrap().clone();
         ["mass_kg", "x_m", "z_m", "vz_m_s"].map(|name| row[at(name)].parse::<f64>().unwrap())
     };

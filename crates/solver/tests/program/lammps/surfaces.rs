@@ -232,11 +232,17 @@ fn a_surface_that_planes_cannot_be_needs_surfaces_and_the_reason_is_said() {
         assert!(page.contains("Needs LAMMPS of 4 July 2026 or later"));
         assert!(page.contains("GRANSURF"));
         let stop = export.said("if \"${surfaces} == 0\" then");
-        assert!(stop.contains("the walls bin are surfaces") && stop.ends_with("\"quit 1\""), "{stop}");
+        assert!(
+            stop.contains("the walls bin are surfaces") && stop.ends_with("\"quit 1\""),
+            "{stop}"
+        );
         let fix = export.said("fix wall_1_1 material_1 surface/global");
         let begin = "input stl 1 1 wall-1.stl model * 1 granular hertz ";
         assert!(fix.starts_with(begin), "{fix}");
-        assert!(fix.ends_with("limit_damping flat 8.10961 neighbor nsq"), "{fix}");
+        assert!(
+            fix.ends_with("limit_damping flat 8.10961 neighbor nsq"),
+            "{fix}"
+        );
     }
 }
 
@@ -350,7 +356,10 @@ fn surfaces_travel_and_turn() {
         bench.write("bin.stl", bin(0.05));
         bench.write("scene.toml", scene(more));
         let said = refused_export(&bench, &["scene.toml"]);
-        assert!(said.contains("walls.bin") && said.contains(expected), "{said}");
+        assert!(
+            said.contains("walls.bin") && said.contains(expected),
+            "{said}"
+        );
         assert!(!bench.path("out").exists());
     }
 }
