@@ -107,24 +107,25 @@ impl Run {
             let step = section.step;
             let taken = self.take_frame(before, &section);
             let (numbers, columns, time_s) = taken.map_err(within(frames_path))?;
+            let mut breaks = Vec::new();
+            let mut is_broken = self.pieces.is_broken.clone();
             if let Some(dump) = &mut broken {
-                let known = &self.pieces.is_broken;
-                let found = breaks_until(dump, step, before, &self.exported, known);
-                match found.map_err(within(broken_path))? {
-                    Some(found) => self.take_breaks(&found, results.as_deref_mut())?,
-                    None => {
-                        ends_early = broken_path;
-                        break;
-                    }
-                }
+                let found = breaks_until(dump, step, before, &self.exported, &is_broken);
+                let Some(found) = found.map_err(within(broken_path))? else {
+                    ends_early = broken_path;
+                    break;
+                };
+                breaks = found;
+                breaks.iter().for_each(|one| is_broken[one.bond] = true);
             }
             if let Some(dump) = &mut bonds {
-                let found = check_unbroken(dump, step, &self.exported, &self.pieces.is_broken);
+                let found = check_unbroken(dump, step, &self.exported, &is_broken);
                 if found.map_err(within(bonds_path))?.is_none() {
                     ends_early = bonds_path;
                     break;
                 }
             }
+            self.take_breaks(&breaks, results.as_deref_mut())?;
             self.pieces.add_fed(&self.manifest, &self.exported, time_s);
             self.pieces.move_to(&section, &columns, &numbers);
             if let Some(results) = &mut results {
