@@ -83,7 +83,7 @@ impl Run {
         let paths = [FRAMES, BONDS, BROKEN].map(|name| folder.join(name));
         let [frames_path, bonds_path, broken_path] = &paths;
         let has_bonds = !self.exported.bonds.is_empty();
-        let breaks = has_bonds && self.manifest.breaks;
+        let can_break = has_bonds && self.manifest.breaks;
         let mut inputs = [
             Some(open(
                 frames_path,
@@ -92,7 +92,9 @@ impl Run {
             has_bonds
                 .then(|| open(bonds_path, KEEP_DUMPS))
                 .transpose()?,
-            breaks.then(|| open(broken_path, KEEP_DUMPS)).transpose()?,
+            can_break
+                .then(|| open(broken_path, KEEP_DUMPS))
+                .transpose()?,
         ];
         let [frames, bonds, broken] = &mut inputs;
         let mut frames = begun(frames, frames_path)?;
