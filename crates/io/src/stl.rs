@@ -17,7 +17,7 @@ pub(crate) use facets::{Facets, REMEDY_AGAIN, REMEDY_OTHER, REMEDY_REPAIR};
 pub(crate) use precision::precision_note;
 pub use precision::single_precision_keeps;
 use std::io::{Cursor, Read, Seek, SeekFrom};
-pub use write::write_stl;
+pub use write::{write_stl, write_stl_text};
 
 /// Bytes of the header and the count of a binary file.
 pub(crate) const BINARY_START: usize = 84;

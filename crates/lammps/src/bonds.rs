@@ -15,10 +15,9 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
-use dem_io::Result;
 use dem_scene::Scene;
 
-use super::words::refused;
+use super::refusals::Refusals;
 use dem_engine::state::State;
 use dem_engine::state::bonds::{BondLaw, BondRule};
 use dem_physics::bond::failure::Criteria;
@@ -79,17 +78,19 @@ pub(crate) fn write(types: &BondTypes, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// Sorts the bonds of a state into types; refuses a rule that the bond style cannot represent.
-pub(crate) fn bond_types(scene: &Scene, state: &State) -> Result<BondTypes> {
-    for (name, rule) in scene.bonds.keys().zip(state.bonds.rules.iter()) {
-        refuse_rule(scene, name, rule)?;
+pub(crate) fn bond_types(scene: &Scene, state: &State, refusals: &mut Refusals) -> BondTypes {
+    for (number, (name, rule)) in (0..).zip(scene.bonds.keys().zip(state.bonds.rules.iter())) {
+        refuse_rule(name, rule, refusals);
+        // One of its bonds stands for all of them.
+        let mut own = (0..state.bonds.len()).filter(|at| state.bonds.rule_of(*at) == number);
+        if let Some((part, why, remedy)) = own.find_map(|at| misfit_of_bond(name, state, at)) {
+            refusals.add(part, why, remedy);
+        }
     }
-    let mut all = Vec::with_capacity(state.bonds.len());
-    for at in 0..state.bonds.len() {
-        refuse_bond(scene, state, at)?;
-        all.push(coefficients(state, at));
-    }
-    let radii: Vec<f64> = (0..all.len()).map(|at| state.bonds.radius_m(at)).collect();
-    Ok(classes(&all, &radii))
+    let bonds = 0..state.bonds.len();
+    let all: Vec<Coefficients> = bonds.clone().map(|at| coefficients(state, at)).collect();
+    let radii: Vec<f64> = bonds.map(|at| state.bonds.radius_m(at)).collect();
+    classes(&all, &radii)
 }
 
 /// Sorts bonds with these coefficients and radii, m, into classes no wider than [`CLASS_WIDTH`].
@@ -266,14 +267,11 @@ fn misfits_of_criteria(criteria: &Criteria) -> [Misfit; 5] {
     ]
 }
 
-fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
+fn refuse_rule(name: &str, rule: &BondRule, refusals: &mut Refusals) {
     let of_criteria = rule.criteria.iter().flat_map(misfits_of_criteria);
-    let mut misfits = misfits_of_law(rule).into_iter().chain(of_criteria);
-    match misfits.find(|(is_there, ..)| *is_there) {
-        Some((_, key, why, remedy)) => {
-            Err(refused(scene, format!("bonds.{name}.{key}"), why, remedy))
-        }
-        None => Ok(()),
+    let misfits = misfits_of_law(rule).into_iter().chain(of_criteria);
+    for (_, key, why, remedy) in misfits.filter(|(is_there, ..)| *is_there) {
+        refusals.add(format!("bonds.{name}.{key}"), why, remedy);
     }
 }
 
@@ -283,10 +281,9 @@ const MIDDLE: f64 = 1e-3;
 /// their bond.
 const UNSTRESSED: f64 = 1e-9;
 
-fn refuse_bond(scene: &Scene, state: &State, at: usize) -> Result<()> {
+/// Part, reason and remedy, if the bond style cannot represent this bond of a rule.
+fn misfit_of_bond(name: &str, state: &State, at: usize) -> Option<(String, String, &'static str)> {
     let bonds = &state.bonds;
-    let name = scene.bonds.keys().nth(bonds.rule_of(at));
-    let name = name.map_or("", String::as_str);
     let [a, b] = bonds.levers_m(at);
     let length_m = a + b;
     if (a - b).abs() > 2.0 * MIDDLE * length_m {
@@ -294,13 +291,11 @@ fn refuse_bond(scene: &Scene, state: &State, at: usize) -> Result<()> {
             "in this model shear does not act in the middle of a bond between spheres of different size, where bpm/rotational has it, but {:.1} % of its length away",
             50.0 * (a - b).abs() / length_m
         );
-        return Err(refused(
-            scene,
-            format!("bonds.{name}.model"),
-            why,
-            "use another model, such as \"timoshenko\", or spheres of one size",
-        ));
+        let remedy = "use another model, such as \"timoshenko\", or spheres of one size";
+        return Some((format!("bonds.{name}.model"), why, remedy));
     }
+    let part = format!("[bonds.{name}]");
+    let remedy = "start from a body whose bonds are at rest";
     let [i, j] = bonds.ends[at].map(|end| state.particles.poses[end as usize].place());
     let apart_m = (j - i).norm();
     if (apart_m / length_m - 1.0).abs() > UNSTRESSED {
@@ -308,27 +303,14 @@ fn refuse_bond(scene: &Scene, state: &State, at: usize) -> Result<()> {
             "a bond is {:.3e} of its length longer than at rest, and bpm/rotational takes the lengths at rest from the positions at the start",
             apart_m / length_m - 1.0
         );
-        return Err(refused(
-            scene,
-            format!("bonds.{name}"),
-            why,
-            "start from a body whose bonds are at rest",
-        ));
+        return Some((part, why, remedy));
     }
     // A deformation in place of the load of each mode: m and rad.
     let strain = bonds.deformation(at, &state.particles.poses);
     let sheared = strain.shear_n / length_m;
     let largest = sheared.max(strain.torsion_n_m).max(strain.bending_n_m);
-    if largest > UNSTRESSED {
-        let why = format!(
-            "a bond is sheared, twisted or bent by {largest:.3e}, and bpm/rotational takes bonds at rest from the positions at the start"
-        );
-        return Err(refused(
-            scene,
-            format!("bonds.{name}"),
-            why,
-            "start from a body whose bonds are at rest",
-        ));
-    }
-    Ok(())
+    let why = format!(
+        "a bond is sheared, twisted or bent by {largest:.3e}, and bpm/rotational takes bonds at rest from the positions at the start"
+    );
+    (largest > UNSTRESSED).then_some((part, why, remedy))
 }

@@ -8,10 +8,9 @@
 
 use std::f64::consts::PI;
 
-use dem_io::Result;
 use dem_scene::Scene;
 
-use super::words::refused;
+use super::refusals::Refusals;
 use dem_engine::state::contacts::NO_KIND;
 use dem_physics::contact::law::{ContactKind, Law, Rolling};
 use dem_physics::contact::pair_parameters::PairParameters;
@@ -31,7 +30,7 @@ pub(super) struct Contacts {
 
 /// The contacts of a planned scene; refuses rolling friction, a liquid bridge, and a restitution
 /// that is too small.
-pub(super) fn contacts(scene: &Scene, plan: &Plan) -> Result<Contacts> {
+pub(super) fn contacts(scene: &Scene, plan: &Plan, refusals: &mut Refusals) -> Contacts {
     let state = &plan.state;
     let materials: Vec<String> = scene.materials.keys().cloned().collect();
     let Some(contacts) = &state.contacts else {
@@ -46,11 +45,11 @@ pub(super) fn contacts(scene: &Scene, plan: &Plan) -> Result<Contacts> {
                 material_of[i as usize] = number as u8;
             }
         }
-        return Ok(Contacts {
+        return Contacts {
             materials,
             material_of,
             laws: Vec::new(),
-        });
+        };
     };
     let mut laws = Vec::new();
     let count = materials.len();
@@ -60,34 +59,38 @@ pub(super) fn contacts(scene: &Scene, plan: &Plan) -> Result<Contacts> {
             if kind != NO_KIND && !contacts.model.alone {
                 let names = format!("{}-{}", materials[a], materials[b]);
                 let kind = &contacts.model.kinds[kind as usize];
-                laws.push(([a, b], law_in_words(scene, &names, kind)?));
+                let law = law_in_words(&names, kind, refusals);
+                laws.extend(law.map(|law| ([a, b], law)));
             }
         }
     }
-    Ok(Contacts {
+    Contacts {
         materials,
         material_of: contacts.materials.clone(),
         laws,
-    })
+    }
 }
 
-/// A contact law in the words of `pair_coeff` and `fix wall/gran`.
-pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Result<String> {
+/// The contact law of a pair of materials, `grain-plate`, in the words of `pair_coeff`, `fix
+/// wall/gran` and `fix surface/global`, which mean something only if it is not refused.
+pub(super) fn law_in_words(
+    names: &str,
+    kind: &ContactKind,
+    refusals: &mut Refusals,
+) -> Option<String> {
     if kind.rolling != Rolling::Free {
-        return Err(refused(
-            scene,
+        refusals.add(
             format!("contacts.{names}.rolling_friction"),
             "the spring of its rolling friction does not follow the load of the contact, and it has no constant moment",
             "leave rolling_friction out",
-        ));
+        );
     }
     if kind.bridge.is_some() {
-        return Err(refused(
-            scene,
+        refusals.add(
             format!("contacts.{names}.liquid_bridge"),
             "liquid between its ends, which pulls them together beyond their touch",
             "leave it out, or run the scene with dem-run",
-        ));
+        );
     }
     let (normal, tangential, parameters) = match &kind.law {
         Law::HertzMindlin(law) => {
@@ -102,12 +105,12 @@ pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Re
             )
         }
         Law::DerjaguinMullerToporov(_) => {
-            return Err(refused(
-                scene,
+            refusals.add(
                 format!("contacts.{names}.law"),
                 "the friction of its dmt has another limit than the force that presses",
                 "write law = \"hertz-mindlin\" without work_of_adhesion",
-            ));
+            );
+            return None;
         }
         Law::Linear(law) => {
             let (n, t) = (law.normal_n_m, law.tangential_n_m);
@@ -121,14 +124,13 @@ pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Re
     };
     let zeta = parameters.damping_ratio;
     if zeta >= 1.0 {
-        return Err(refused(
-            scene,
+        refusals.add(
             format!("contacts.{names}.restitution"),
             format!(
                 "it needs a damping ratio of {zeta:.3}, and that of coeff_restitution is below 1"
             ),
             "use a restitution above 0.136",
-        ));
+        );
     }
     let restitution = (-PI * zeta / (1.0 - zeta * zeta).sqrt()).exp();
     let cut = if parameters.least_n == 0.0 {
@@ -136,7 +138,7 @@ pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Re
     } else {
         ""
     };
-    Ok(format!(
+    Some(format!(
         "{normal} {restitution:e} tangential {tangential} {:e} damping coeff_restitution{cut}",
         parameters.friction
     ))

@@ -103,11 +103,24 @@ pub(super) fn write(
         return Ok(());
     }
     writeln!(out, "\nBonds\n")?;
-    for (number, (ends, of)) in (1..).zip(state.bonds.ends.iter().zip(&types.type_of)) {
-        let [a, b] = ends.map(|end| atom(plan, end as usize));
-        writeln!(out, "{number} {} {a} {b}", of + 1)?;
+    for (number, at) in (1..).zip(as_in_files(plan)) {
+        let [a, b] = state.bonds.ends[at].map(|end| atom(plan, end as usize));
+        writeln!(out, "{number} {} {a} {b}", types.type_of[at] + 1)?;
     }
     Ok(())
+}
+
+/// Numbers of the bonds in the state, body by body in the order of its file.
+fn as_in_files(plan: &Plan) -> Vec<usize> {
+    let mut numbers = Vec::with_capacity(plan.state.bonds.len());
+    for body in &plan.bodies {
+        let mut own: Vec<(u32, usize)> = (body.bonds.iter().copied())
+            .zip(body.first_bond..)
+            .collect();
+        own.sort_unstable();
+        numbers.extend(own.into_iter().map(|(_, at)| at));
+    }
+    numbers
 }
 
 /// Whether a particle of a clump moves by itself: a clump of one sphere.

@@ -25,9 +25,10 @@ pub(crate) struct Section {
 
 impl Section {
     /// The numbers of the columns with these names.
-    pub(crate) fn find<const N: usize>(&self, names: [&str; N]) -> Result<[usize; N]> {
+    pub(crate) fn find<const N: usize>(&self, names: [impl AsRef<str>; N]) -> Result<[usize; N]> {
         let mut found = [0; N];
-        for (slot, name) in found.iter_mut().zip(names) {
+        for (slot, name) in found.iter_mut().zip(&names) {
+            let name = name.as_ref();
             let at = self.columns.iter().position(|column| column == name);
             *slot = at.ok_or_else(|| {
                 let problem = format!("there is no column '{name}'");

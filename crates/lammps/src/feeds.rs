@@ -8,12 +8,12 @@
 
 use std::io::{self, Write};
 
-use dem_io::Result;
 use dem_io::body::mass::volume_m3;
 use dem_scene::Scene;
 
 use super::duration::{step_s, steps};
-use super::words::{block, cylinder, numbers, refused};
+use super::refusals::Refusals;
+use super::words::{block, cylinder, numbers};
 use dem_engine::state::clumps::Template;
 use dem_engine::state::rules::{Feed as Rate, Inlet};
 use dem_physics::geometry::Bounds;
@@ -63,24 +63,19 @@ impl Feed {
     }
 }
 
-/// What the inlets of a planned scene feed.
-///
-/// # Errors
-/// Bodies that are bonded, turn, or come as they lie in their file; a region that is a surface or a
-/// cylinder across the axes.
-pub(super) fn feeds(scene: &Scene, plan: &Plan) -> Result<Vec<Feed>> {
+/// What the inlets of a planned scene feed. Refuses bodies that are bonded, turn, or come as they
+/// lie in their file, and a region that is a surface or a cylinder across the axes.
+pub(super) fn feeds(scene: &Scene, plan: &Plan, refusals: &mut Refusals) -> Vec<Feed> {
     let mut feeds = Vec::new();
     for inlet in &plan.state.model.rules.inlets {
-        let part = format!("[inlets.{}]", inlet.name);
         if inlet.spin_rad_s != [0.0; 3] {
-            return Err(refused(
-                scene,
+            refusals.add(
                 format!("inlets.{}.angular_velocity", inlet.name),
                 "fix deposit gives new bodies a velocity and no spin",
                 "leave it out, or run the scene with dem-run",
-            ));
+            );
         }
-        let (region, bounds) = region(scene, &part, plan, inlet)?;
+        let (region, bounds) = region(plan, inlet, refusals);
         let mean_mass_kg: f64 = (inlet.templates.iter())
             .map(|(of, share)| share * plan.state.clumps.templates[*of as usize].mass_kg)
             .sum();
@@ -91,7 +86,7 @@ pub(super) fn feeds(scene: &Scene, plan: &Plan) -> Result<Vec<Feed>> {
         for &(of, share) in &inlet.templates {
             let template = &plan.state.clumps.templates[of as usize];
             let is_clump = template.outer.len() > 1;
-            refuse_body(scene, plan, inlet, of as usize, is_clump)?;
+            refuse_body(plan, inlet, of as usize, is_clump, refusals);
             let Some([start, every, count]) = times(scene, plan, inlet, share, per_s) else {
                 continue;
             };
@@ -114,36 +109,33 @@ pub(super) fn feeds(scene: &Scene, plan: &Plan) -> Result<Vec<Feed>> {
             });
         }
     }
-    Ok(feeds)
+    feeds
 }
 
 fn refuse_body(
-    scene: &Scene,
     plan: &Plan,
     inlet: &Inlet,
     template: usize,
     is_clump: bool,
-) -> Result<()> {
+    refusals: &mut Refusals,
+) {
     let body = &plan.state.clumps.templates[template].body;
     if plan.state.model.rules.starts[template].bonded {
-        return Err(refused(
-            scene,
+        refusals.add(
             format!("[inlets.{}]", inlet.name),
             format!(
                 "the exported inlets feed clumps and spheres, and \"{body}\" comes with its bonds"
             ),
             format!("feed it as a clump: bodies.{body}.start_as = \"clump\""),
-        ));
+        );
     }
     if is_clump && !inlet.random_orientation {
-        return Err(refused(
-            scene,
+        refusals.add(
             format!("inlets.{}.orientation", inlet.name),
             "fix deposit turns each molecule at random",
             "use orientation = \"random\", or run the scene with dem-run",
-        ));
+        );
     }
-    Ok(())
 }
 
 /// First step, steps from one body to the next, and number of bodies, for a share of an inlet.
@@ -160,14 +152,16 @@ fn times(scene: &Scene, plan: &Plan, inlet: &Inlet, share: f64, per_s: f64) -> O
     (count > 0).then_some([start, every, count])
 }
 
-/// Style and arguments of the region of an inlet, and the box around it.
-fn region(scene: &Scene, part: &str, plan: &Plan, inlet: &Inlet) -> Result<(String, Bounds)> {
+/// Style and arguments of the region of an inlet, and the box around it. They are empty if it is
+/// refused.
+fn region(plan: &Plan, inlet: &Inlet, refusals: &mut Refusals) -> (String, Bounds) {
     let region = &plan.state.model.rules.regions[inlet.region];
     let bounds = region.bounds();
-    let refuse = |why: &str| {
+    let mut refuse = |why: &str| {
         let remedy =
             "use a box, a sphere, or a cylinder along an axis, or run the scene with dem-run";
-        Err(refused(scene, format!("{part}.region"), why, remedy))
+        refusals.add(format!("inlets.{}.region", inlet.name), why, remedy);
+        String::new()
     };
     let words = match region {
         Region::Box(Bounds { low, high }) => block([*low, *high]),
@@ -180,11 +174,11 @@ fn region(scene: &Scene, part: &str, plan: &Plan, inlet: &Inlet) -> Result<(Stri
             radius_m,
         } => match cylinder([*from_m, *to_m], *radius_m) {
             Some(words) => words,
-            None => return refuse("the region cylinder is along an axis, and this one is not"),
+            None => refuse("the region cylinder is along an axis, and this one is not"),
         },
-        Region::Inside(..) => return refuse("a region of LAMMPS has no triangles"),
+        Region::Inside(..) => refuse("a region of LAMMPS has no triangles"),
     };
-    Ok((words, bounds))
+    (words, bounds)
 }
 
 /// Writes the molecule of a body: its outer spheres, which can be touched, along its principal

@@ -24,9 +24,9 @@ pub(crate) struct Manifest {
     /// Number of steps until the end, and the time of the end, s.
     pub steps: u64,
     pub end_s: f64,
-    /// Names of the bodies.
-    pub body_names: Vec<String>,
-    /// For each molecule, its body: number in `body_names`.
+    /// The bodies.
+    pub bodies: Vec<ExportedBody>,
+    /// For each molecule, its body: number in `bodies`.
     pub body_of_molecule: Vec<u32>,
     /// For each molecule whether it is a rigid clump.
     pub is_clump: Vec<bool>,
@@ -34,6 +34,22 @@ pub(crate) struct Manifest {
     pub fed: Vec<FedBody>,
     /// Radius of the bonds of each type, m.
     pub bond_radii_m: Vec<f64>,
+    /// Whether bonds can break.
+    pub breaks: bool,
+    /// Sieves of the size distribution, m. Empty: those that its fragments suggest.
+    pub sieves_m: Vec<f64>,
+}
+
+/// A body of the scene.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct ExportedBody {
+    pub name: String,
+    pub material: String,
+    /// Sizes: see `NamedBody`.
+    pub sieve_m: f64,
+    pub smallest_diameter_m: f64,
+    pub mean_diameter_m: f64,
+    pub fine_fraction: f64,
 }
 
 /// A body that an inlet feeds.
@@ -41,10 +57,24 @@ pub(crate) struct Manifest {
 pub(crate) struct FedBody {
     /// Type of its atoms.
     pub atom_type: u64,
-    /// Number in `body_names`.
+    /// Number in `bodies`.
     pub body: u32,
     /// Whether it is a rigid clump.
     pub is_clump: bool,
     /// Density of its spheres, with which they have the mass of the body together, kg/m3.
     pub density_kg_m3: f64,
+}
+
+impl Manifest {
+    /// Number of rigid clumps of several particles, with these molecules of the particles.
+    pub(crate) fn clumps(&self, molecules: &[u32]) -> usize {
+        let mut sizes = vec![0_u32; self.is_clump.len()];
+        for molecule in molecules {
+            sizes[*molecule as usize - 1] += 1;
+        }
+        let clumps = self.is_clump.iter().zip(sizes);
+        clumps
+            .filter(|(is_clump, size)| **is_clump && *size > 1)
+            .count()
+    }
 }

@@ -1,9 +1,8 @@
 //! Loads and supports as fixes.
 
-use dem_io::Result;
 use dem_scene::{Factor, Hold, Scene};
 
-use super::words::refused;
+use super::refusals::Refusals;
 use dem_plan::Plan;
 
 /// A load on a group of particles.
@@ -69,21 +68,44 @@ pub(super) fn formula(factor: &Factor) -> String {
     }
 }
 
-/// The loads and supports of a planned scene.
-///
-/// # Errors
-/// Torques, or supports that hold only some degrees of freedom, turn, or end.
-pub(super) fn forces(scene: &Scene, plan: &Plan) -> Result<Forces> {
+/// The rate of change of a factor over time as a formula of LAMMPS, 1/s.
+pub(super) fn rate(factor: &Factor) -> String {
+    match factor {
+        Factor::One => "0.0".to_owned(),
+        Factor::Oscillation {
+            frequency_hz,
+            phase_rad,
+        } => {
+            let rate_rad_s = std::f64::consts::TAU * frequency_hz;
+            format!("({rate_rad_s:e}*cos({rate_rad_s:e}*time+({phase_rad:e})))")
+        }
+        Factor::Ramp { until_s } => format!("((time<{until_s:e})/{until_s:e})"),
+        Factor::Table(points) => {
+            let slope = |pair: &[[f64; 2]]| {
+                let [[t0, f0], [t1, f1]] = [pair[0], pair[1]];
+                format!("(time>={t0:e})*(time<{t1:e})*({:e})", (f1 - f0) / (t1 - t0))
+            };
+            let slopes: Vec<String> = points.windows(2).map(slope).collect();
+            match slopes.is_empty() {
+                true => "0.0".to_owned(),
+                false => format!("({})", slopes.join("+")),
+            }
+        }
+    }
+}
+
+/// The loads and supports of a planned scene. Refuses torques, and supports that hold only some
+/// degrees of freedom, turn, or end.
+pub(super) fn forces(scene: &Scene, plan: &Plan, refusals: &mut Refusals) -> Forces {
     let mut forces = Forces::default();
     for ((name, _), load) in scene.loads.iter().zip(&plan.state.loads) {
         let part = format!("[loads.{name}]");
         if load.torque_n_m != [0.0; 3] {
-            return Err(refused(
-                scene,
+            refusals.add(
                 part,
                 "fix addtorque turns a group as a whole, but loads no single particle with a torque",
                 "replace the torque by forces",
-            ));
+            );
         }
         let mut factor = formula(&load.factor);
         if load.end_s.is_finite() {
@@ -98,20 +120,19 @@ pub(super) fn forces(scene: &Scene, plan: &Plan) -> Result<Forces> {
     for ((name, _), support) in scene.supports.iter().zip(&plan.state.supports) {
         let part = format!("[supports.{name}]");
         if support.end_s.is_finite() {
-            return Err(refused(
-                scene,
-                part,
+            refusals.add(
+                &*part,
                 "a fix that holds particles is not removed within a run",
                 "leave end out",
-            ));
+            );
         }
         let Some(held) = all_held(&support.holds, &support.factor) else {
-            return Err(refused(
-                scene,
+            refusals.add(
                 part,
                 "fix freeze holds all six degrees of freedom, and fix move moves without turning and at one velocity",
                 "use fixed = true; or velocities along x, y and z, without ramp, and fixed = [\"rx\", \"ry\", \"rz\"]",
-            ));
+            );
+            continue;
         };
         forces.supports.push(WrittenSupport {
             name: name.clone(),
@@ -119,7 +140,7 @@ pub(super) fn forces(scene: &Scene, plan: &Plan) -> Result<Forces> {
             velocity_m_s: held,
         });
     }
-    Ok(forces)
+    forces
 }
 
 /// The velocity of a support that holds all degrees of freedom and does not turn: Some(None) if it

@@ -40,14 +40,16 @@ impl Input<'_> {
         self.add_interactions(&mut text);
         self.add_groups(&mut text);
         self.add_motion(&mut text);
-        self.add_forces(&mut text);
+        self.add_loads(&mut text);
         self.add_walls(&mut text);
+        // A fix that holds particles comes after all that push them.
+        self.add_supports(&mut text);
         self.add_output(&mut text);
         self.add_runs(&mut text);
         text
     }
 
-    fn line(text: &mut String, line: impl std::fmt::Display) {
+    pub(super) fn line(text: &mut String, line: impl std::fmt::Display) {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{line}");
     }
@@ -57,6 +59,11 @@ impl Input<'_> {
             "# Written by dem-run export lammps; README.md says what is carried over and what is not.",
             "# mpirun -np N lmp -in in.lammps",
             "units si",
+        ] {
+            Self::line(text, line);
+        }
+        self.add_version(text);
+        for line in [
             "atom_style bpm/sphere",
             "atom_modify map array",
             "dimension 3",
@@ -328,7 +335,7 @@ impl Input<'_> {
         );
     }
 
-    fn add_forces(&self, text: &mut String) {
+    fn add_loads(&self, text: &mut String) {
         for (number, load) in (1..).zip(&self.forces.loads) {
             Self::line(text, format!("# load {}", load.name));
             for (axis, formula) in ["x", "y", "z"].into_iter().zip(&load.formulas) {
@@ -351,6 +358,9 @@ impl Input<'_> {
                 format!("fix damping all damping/cundall {damping:e} {damping:e}"),
             );
         }
+    }
+
+    fn add_supports(&self, text: &mut String) {
         for (number, support) in (1..).zip(&self.forces.supports) {
             Self::line(text, format!("# support {}", support.name));
             let name = format!("support_{number}");
@@ -362,54 +372,6 @@ impl Input<'_> {
                 },
             );
         }
-    }
-
-    fn add_walls(&self, text: &mut String) {
-        for (number, wall) in (1..).zip(self.walls) {
-            Self::line(text, format!("# wall {}", wall.name));
-            let mut moves = String::new();
-            if let Some(formulas) = &wall.moves {
-                for (axis, formula) in ["x", "y", "z"].into_iter().zip(formulas) {
-                    Self::line(
-                        text,
-                        format!("variable wall_{number}_{axis} equal \"{formula}\""),
-                    );
-                }
-                moves = format!(" move v_wall_{number}_x v_wall_{number}_y v_wall_{number}_z");
-            }
-            Self::add_region(text, number, &wall.regions, &moves);
-            for (material, law) in &wall.laws {
-                let material = material + 1;
-                let met = format!("wall/gran/region granular {law} region wall_{number}");
-                Self::line(
-                    text,
-                    format!("fix wall_{number}_{material} material_{material} {met}"),
-                );
-                let fed = self.feeds.iter().filter(|f| f.material + 1 == material);
-                for group in fed.map(Feed::group) {
-                    Self::line(text, format!("fix wall_{number}_{group} {group} {met}"));
-                }
-            }
-        }
-    }
-
-    /// The region of a wall: of several, which do not move, their intersection.
-    fn add_region(text: &mut String, number: usize, regions: &[String], moves: &str) {
-        if let [region] = regions {
-            let region = format!("region wall_{number} {region} units box{moves}");
-            return Self::line(text, region);
-        }
-        let mut names = String::new();
-        for (part, region) in (1..).zip(regions) {
-            let name = format!("wall_{number}_part_{part}");
-            Self::line(text, format!("region {name} {region} units box"));
-            names += &format!(" {name}");
-        }
-        let count = regions.len();
-        Self::line(
-            text,
-            format!("region wall_{number} intersect {count}{names}"),
-        );
     }
 
     fn add_output(&self, text: &mut String) {

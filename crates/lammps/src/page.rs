@@ -9,7 +9,9 @@ use super::clumps::has_bodies;
 use super::duration::{frame_every, step_s, steps};
 use super::files::{BONDS, BROKEN, FRAMES};
 use super::input::Input;
-use super::walls::WrittenWall;
+use super::input_walls::needs_surfaces;
+use super::wall_motion::SurfaceMotion;
+use super::walls::{WrittenShape, WrittenWall};
 
 /// The page as Markdown.
 pub(super) fn page(input: &Input<'_>) -> String {
@@ -18,9 +20,10 @@ pub(super) fn page(input: &Input<'_>) -> String {
         "# {} for LAMMPS\n\n\
          ```sh\nmpirun -np 4 lmp -in in.lammps      # or lmp -in in.lammps\n\
          dem-run import . -o results          # back to frames, a page and pictures\n```\n\n\
-         SI units (m, kg, s, N). Written for LAMMPS of 22 July 2025 with the packages BPM, EXTRA-FIX, GRANULAR and RIGID.\n\n\
+         SI units (m, kg, s, N). Needs {}.\n\n\
          ## Carried over\n\n",
-        input.scene.source
+        input.scene.source,
+        needs(input.walls)
     );
     let mut item = |line: String| {
         // Writing to a string does not fail.
@@ -43,15 +46,7 @@ pub(super) fn page(input: &Input<'_>) -> String {
         item(format!("contacts {}-{}: `{law}`", names[*a], names[*b]));
     }
     for wall in input.walls {
-        let moves = if wall.moves.is_some() { ", moving" } else { "" };
-        item(match &wall.regions[..] {
-            [region] => format!("wall {}: `region {region}`{moves}", wall.name),
-            faces => format!(
-                "wall {}: `region intersect` of {} planes, one for each face of the surface",
-                wall.name,
-                faces.len()
-            ),
-        });
+        item(format!("wall {}: {}", wall.name, shape(wall)));
     }
     if has_bodies(state) {
         item(format!(
@@ -91,6 +86,41 @@ pub(super) fn page(input: &Input<'_>) -> String {
     text
 }
 
+/// The LAMMPS that can run an export with these walls.
+pub(super) fn needs(walls: &[WrittenWall]) -> String {
+    match walls.iter().any(needs_surfaces) {
+        true => "LAMMPS of 4 July 2026 or later with the packages BPM, EXTRA-FIX, GRANSURF, GRANULAR and RIGID",
+        false => "LAMMPS of 22 July 2025 or later with the packages BPM, EXTRA-FIX, GRANULAR and RIGID",
+    }
+    .to_owned()
+}
+
+/// A wall in the words of LAMMPS.
+fn shape(wall: &WrittenWall) -> String {
+    let surface = match &wall.shape {
+        WrittenShape::Region(region, moves) => {
+            let moves = if moves.is_some() { ", moving" } else { "" };
+            return format!("`region {region}`{moves}");
+        }
+        WrittenShape::Surface(surface) => surface,
+    };
+    let moves = match surface.motion {
+        SurfaceMotion::Stands => "",
+        SurfaceMotion::Travels { .. } => ", moving",
+        SurfaceMotion::Turns(_) => ", turning",
+    };
+    let triangles = counted(surface.triangles_m.len(), "triangle");
+    let file = wall.file();
+    let instead = match &surface.planes {
+        Ok(planes) => format!(
+            "in LAMMPS before 4 July 2026, and with `-var surfaces 0`, as `region intersect` of {} planes, one for each face of the surface",
+            planes.len()
+        ),
+        Err(why) => format!("planes cannot stand for it: {why}"),
+    };
+    format!("`fix surface/global` of {triangles} (`{file}`){moves}; {instead}")
+}
+
 /// What the exported run does differently.
 fn different(input: &Input<'_>) -> Vec<String> {
     let mut lines = Vec::new();
@@ -115,20 +145,23 @@ fn different(input: &Input<'_>) -> Vec<String> {
     if input.types.break_at_all() && !input.contacts.laws.is_empty() {
         lines.push("Particles that overlap when their bond breaks push each other with the full force of that overlap; in Crumble it becomes the origin of their law.".to_owned());
     }
-    if input
-        .walls
-        .iter()
-        .any(|wall| wall.regions[0].starts_with("cylinder"))
-    {
+    let of_style = |wall: &WrittenWall, style: &str| match &wall.shape {
+        WrittenShape::Region(region, _) => region.starts_with(style),
+        WrittenShape::Surface(_) => false,
+    };
+    if input.walls.iter().any(|wall| of_style(wall, "cylinder")) {
         lines.push("On cylinders, LAMMPS takes the curvature of the wall into account; in Crumble a wall is flat where it is touched.".to_owned());
     }
     // Planes alone meet in corners only, where each of them pushes here as well.
-    let is_plane = |wall: &WrittenWall| wall.regions.iter().all(|one| one.starts_with("plane"));
-    if input.walls.len() > 1 && !input.walls.iter().all(is_plane) {
+    if input.walls.len() > 1 && !input.walls.iter().all(|wall| of_style(wall, "plane")) {
         lines.push("Where walls meet as one surface, as two boxes side by side do, LAMMPS pushes a sphere with each of them; in Crumble with the nearer one.".to_owned());
     }
-    if input.walls.iter().any(|wall| wall.regions.len() > 1) {
-        lines.push("In LAMMPS the faces of a surface that is open go on upwards beyond its rim, and nothing touches the rim.".to_owned());
+    let surfaces = || input.walls.iter().filter_map(WrittenWall::surface);
+    if surfaces().any(|surface| surface.planes.is_ok()) {
+        lines.push("Without `fix surface/global`, the faces of a surface that is open go on upwards beyond its rim, and nothing touches the rim.".to_owned());
+    }
+    if surfaces().next().is_some() {
+        lines.push("`fix surface/global` averages the normals of edges and corners. Each particle is compared with each triangle: for large surfaces try `neighbor bin` in place of `neighbor nsq`, unless an inlet feeds particles larger than those of the start.".to_owned());
     }
     if !input.contacts.laws.is_empty() || !input.walls.is_empty() {
         lines.push("Where a contact slides, LAMMPS limits spring and damper together; in Crumble the spring first, and the damper to what is left.".to_owned());

@@ -1,20 +1,26 @@
-//! Walls as `fix wall/gran/region`.
+//! Walls as `fix wall/gran/region`, and surfaces as `fix surface/global`.
 //!
-//! Planes, and boxes and cylinders along the axes, are regions of LAMMPS; a surface that is convex
-//! as seen from within is the intersection of planes, which stands. The others may move without
-//! turning.
+//! Planes, and boxes and cylinders along the axes, are regions of LAMMPS, which may move without
+//! turning. A surface is a file of triangles. Where LAMMPS has no `fix surface/global`, one that is
+//! convex as seen from within and stands is the intersection of planes.
+//!
+//! <https://docs.lammps.org/fix_wall_gran_region.html>,
+//! <https://docs.lammps.org/fix_surface_global.html>
 
-use dem_io::Result;
-use dem_scene::{Factor, Scene, WallMotion};
+use dem_scene::Scene;
 use nalgebra::Vector3;
 
 use super::contacts::law_in_words;
 use super::feeds::Feed;
-use super::forces::formula;
+use super::refusals::Refusals;
 use super::surfaces::{Face, depth_m, faces};
-use super::words::{self, ALONG, block, numbers, refused};
+use super::wall_motion::{SurfaceMotion, moves, surface_motion};
+use super::words::{self, ALONG, block, numbers};
 use dem_engine::state::contacts::NO_KIND;
 use dem_engine::state::walls::Wall;
+use dem_io::units::significant;
+use dem_physics::geometry::mesh::Mesh;
+use dem_physics::geometry::one_surface::ALIKE;
 use dem_physics::geometry::{Bounds, Shape, SolidBox};
 use dem_plan::Plan;
 
@@ -23,20 +29,63 @@ use dem_plan::Plan;
 pub(super) struct WrittenWall {
     /// Its name in the scene.
     pub name: String,
-    /// Style and arguments of its region, or of those that intersect in it.
-    pub regions: Vec<String>,
-    /// Formulas of the displacement along x, y, z; None: it does not move.
-    pub moves: Option<[String; 3]>,
+    /// Number from 1.
+    pub number: usize,
+    /// Its shape, with its motion.
+    pub shape: WrittenShape,
     /// For each material that it meets, the law.
     pub laws: Vec<(usize, String)>,
 }
 
-/// The walls of a planned scene.
-///
-/// # Errors
-/// A surface that is not convex as seen from the particles, a box or cylinder across the axes, a
-/// belt, a servo or a turning wall.
-pub(super) fn walls(scene: &Scene, plan: &Plan, feeds: &[Feed]) -> Result<Vec<WrittenWall>> {
+/// The shape of a wall, with its motion.
+#[derive(Debug, Clone)]
+pub(super) enum WrittenShape {
+    /// Style and arguments of a region, and formulas of its displacement along x, y, z; None: it
+    /// does not move.
+    Region(String, Option<[String; 3]>),
+    /// Triangles in a file.
+    Surface(WrittenSurface),
+}
+
+/// A wall of triangles.
+#[derive(Debug, Clone)]
+pub(super) struct WrittenSurface {
+    /// The corners of each at the start, m.
+    pub triangles_m: Vec<[[f64; 3]; 3]>,
+    /// Its motion.
+    pub motion: SurfaceMotion,
+    /// Style and arguments of the planes that intersect in the same wall, or why there are none.
+    pub planes: Result<Vec<String>, String>,
+}
+
+impl WrittenWall {
+    /// Name of the file of its triangles.
+    pub(super) fn file(&self) -> String {
+        format!("wall-{}.stl", self.number)
+    }
+
+    /// It as a surface, if it is one.
+    pub(super) fn surface(&self) -> Option<&WrittenSurface> {
+        match &self.shape {
+            WrittenShape::Surface(surface) => Some(surface),
+            WrittenShape::Region(..) => None,
+        }
+    }
+}
+
+/// The angle below which two triangles that meet are one surface, as in `dem-run`, degrees.
+pub(super) fn flat_degrees() -> String {
+    significant(ALIKE.acos().to_degrees(), 6)
+}
+
+/// The walls of a planned scene. Refuses belts and servos, boxes and cylinders across the axes, and
+/// motions that LAMMPS has no word for.
+pub(super) fn walls(
+    scene: &Scene,
+    plan: &Plan,
+    feeds: &[Feed],
+    refusals: &mut Refusals,
+) -> Vec<WrittenWall> {
     let materials: Vec<&String> = scene.materials.keys().collect();
     let mut present = vec![false; materials.len()];
     for &material in plan.state.contacts.iter().flat_map(|c| &c.materials) {
@@ -46,86 +95,90 @@ pub(super) fn walls(scene: &Scene, plan: &Plan, feeds: &[Feed]) -> Result<Vec<Wr
         present[feed.material] = true;
     }
     let mut walls = Vec::new();
-    for wall in &plan.state.walls {
+    for (number, wall) in (1..).zip(&plan.state.walls) {
         let model = &wall.model;
-        let part = format!("[walls.{}]", model.name);
         if model.surface_velocity_m_s != [0.0; 3] {
-            return Err(refused(
-                scene,
-                &part,
-                "a region has no belt that moves while it stands",
+            refusals.add(
+                format!("walls.{}.surface_velocity", model.name),
+                "its walls have no belt that moves while they stand",
                 "leave surface_velocity out, or run the scene with dem-run",
-            ));
+            );
         }
-        let regions = regions(scene, &part, plan, wall)?;
-        let moves = moves(scene, &part, &model.motion)?;
-        if regions.len() > 1 && moves.is_some() {
-            return Err(refused(
-                scene,
-                &part,
-                "a surface is an intersection of regions, which cannot move as one",
-                "let it stand, or run the scene with dem-run",
-            ));
-        }
+        let own = &scene.walls[&model.name].material;
         let mut laws = Vec::new();
         let kinds = model.kind_of.iter().enumerate();
         for (material, &kind) in kinds.filter(|(m, kind)| **kind != NO_KIND && present[*m]) {
-            let names = format!("{} with [walls.{}]", materials[material], model.name);
-            let law = law_in_words(scene, &names, &model.kinds[kind as usize])?;
-            laws.push((material, law));
+            let names = format!("{}-{own}", materials[material]);
+            let law = law_in_words(&names, &model.kinds[kind as usize], refusals);
+            laws.extend(law.map(|law| (material, law)));
         }
-        walls.push(WrittenWall {
+        walls.extend(shape(plan, wall, refusals).map(|shape| WrittenWall {
             name: model.name.clone(),
-            regions,
-            moves,
+            number,
+            shape,
             laws,
-        });
+        }));
     }
-    Ok(walls)
+    walls
 }
 
-/// Style and arguments of the region of a wall, or of those that intersect in it.
-fn regions(scene: &Scene, part: &str, plan: &Plan, wall: &Wall) -> Result<Vec<String>> {
+/// The shape of a wall with its motion. None: it is refused.
+fn shape(plan: &Plan, wall: &Wall, refusals: &mut Refusals) -> Option<WrittenShape> {
     let frame = &wall.frame;
+    let part = format!("[walls.{}]", wall.model.name);
+    let mut refuse = |why: &str, remedy: &str| {
+        refusals.add(&*part, why, remedy);
+        None
+    };
     let region = match &wall.model.shape {
         Shape::Plane(plane) => {
             let point = frame.to_space(plane.point_m());
             let normal = frame.direction_to_space(plane.normal());
-            plane_region(&point, &normal)
+            Some(plane_region(&point, &normal))
         }
-        Shape::Box(solid) => {
-            let corners = corners(scene, part, wall, solid)?;
-            format!("{} side out", block(corners))
-        }
+        Shape::Box(solid) => match corners(wall, solid) {
+            Some(corners) => Some(format!("{} side out", block(corners))),
+            None => refuse(
+                "the region block is along the axes, and this box is turned",
+                "replace it by a surface (stl) or planes, or run the scene with dem-run",
+            ),
+        },
         Shape::Cylinder(cylinder) => {
             let ends_m = cylinder.ends_m().map(|end| frame.to_space(end));
-            let Some(region) = words::cylinder(ends_m, cylinder.radius_m()) else {
-                return Err(refused(
-                    scene,
-                    part,
+            match words::cylinder(ends_m, cylinder.radius_m()) {
+                Some(region) => Some(format!("{region} side out")),
+                None => refuse(
                     "the region cylinder is along an axis, and this wall is not",
-                    "turn the scene, or run it with dem-run",
-                ));
-            };
-            format!("{region} side out")
+                    "replace it by a surface (stl), turn the scene, or run it with dem-run",
+                ),
+            }
         }
         Shape::Mesh(mesh) => {
-            let up = -Vector3::from(plan.state.model.gravity_m_s2);
-            let up = up.try_normalize(0.0).unwrap_or_default();
-            let faces = faces(mesh, frame, up).and_then(|faces| holds_all(plan, faces));
-            let regions = |faces: Vec<Face>| {
-                let region =
-                    |[point, normal]: &Face| plane_region(&(*point).into(), &(*normal).into());
-                faces.iter().map(region).collect()
-            };
-            return faces.map(regions).map_err(|why| {
-                let why = format!("fix wall/gran has no triangles, only planes around a room, and {why}");
-                let remedy = "replace the surface by planes, boxes and cylinders, or run the scene with dem-run";
-                refused(scene, part, why, remedy)
-            });
+            let motion = surface_motion(&part, wall, refusals)?;
+            return Some(WrittenShape::Surface(surface(plan, wall, mesh, motion)));
         }
     };
-    Ok(vec![region])
+    let moves = moves(&part, &wall.model.motion, refusals);
+    Some(WrittenShape::Region(region?, moves?))
+}
+
+/// A wall of triangles.
+fn surface(plan: &Plan, wall: &Wall, mesh: &Mesh, motion: SurfaceMotion) -> WrittenSurface {
+    let to_space = |corners: [[f64; 3]; 3]| corners.map(|corner| wall.frame.to_space(corner));
+    let planes = match motion {
+        SurfaceMotion::Stands => {
+            let up = -Vector3::from(plan.state.model.gravity_m_s2);
+            let up = up.try_normalize(0.0).unwrap_or_default();
+            faces(mesh, &wall.frame, up).and_then(|faces| holds_all(plan, faces))
+        }
+        _ => Err("it moves".to_owned()),
+    };
+    let region = |[point, normal]: &Face| plane_region(&(*point).into(), &(*normal).into());
+    WrittenSurface {
+        triangles_m: mesh.corners_m().map(to_space).collect(),
+        motion,
+        planes: planes.map(|faces| faces.iter().map(region).collect()),
+    }
 }
 
 fn plane_region(point: &[f64; 3], normal: &[f64; 3]) -> String {
@@ -133,7 +186,7 @@ fn plane_region(point: &[f64; 3], normal: &[f64; 3]) -> String {
 }
 
 /// These faces, if all particles and inlets are in front of them.
-fn holds_all(plan: &Plan, faces: Vec<Face>) -> std::result::Result<Vec<Face>, String> {
+fn holds_all(plan: &Plan, faces: Vec<Face>) -> Result<Vec<Face>, String> {
     let is_in = |place: &Vector3<f64>| faces.iter().all(|face| depth_m(face, place) > 0.0);
     let particles = plan.state.particles.poses.iter();
     let mut particles = particles.map(|pose| pose.place());
@@ -158,96 +211,19 @@ fn corners_of(bounds: &Bounds) -> [Vector3<f64>; 8] {
     std::array::from_fn(|n| Vector3::from([0, 1, 2].map(|k| ends[n >> k & 1][k])))
 }
 
-/// The corners of a box along the axes.
-fn corners(scene: &Scene, part: &str, wall: &Wall, solid: &SolidBox) -> Result<[[f64; 3]; 2]> {
+/// The corners of a box along the axes. None: it is turned.
+fn corners(wall: &Wall, solid: &SolidBox) -> Option<[[f64; 3]; 2]> {
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let is_along = |axis: [f64; 3]| {
         let turned = wall.frame.direction_to_space(axis);
         turned.iter().any(|x| x.abs() >= ALONG)
     };
-    if !axes.into_iter().all(is_along) {
-        return Err(refused(
-            scene,
-            part,
-            "the region block is along the axes, and this box is turned",
-            "replace it by planes, or run the scene with dem-run",
-        ));
-    }
     let bounds = solid.bounds();
     let [one, other] = [bounds.low, bounds.high].map(|corner| wall.frame.to_space(corner));
-    Ok([
-        [0, 1, 2].map(|k| one[k].min(other[k])),
-        [0, 1, 2].map(|k| one[k].max(other[k])),
-    ])
-}
-
-/// The displacement of a wall along x, y and z as formulas of the time.
-fn moves(scene: &Scene, part: &str, motion: &WallMotion) -> Result<Option<[String; 3]>> {
-    let turns = || {
-        Err(refused(
-            scene,
-            part,
-            "the exported regions move, but do not turn",
-            "leave angular_velocity, angular_displacement and gyration out, or run the scene with dem-run",
-        ))
-    };
-    match motion {
-        WallMotion::Fixed => Ok(None),
-        WallMotion::Velocity {
-            velocity_m_s,
-            spin_rad_s,
-            factor,
-        } => {
-            if *spin_rad_s != [0.0; 3] {
-                return turns();
-            }
-            let travelled = match factor {
-                Factor::One => "time".to_owned(),
-                Factor::Ramp { until_s } => format!(
-                    "((time<{until_s:e})*time*time/{:e}+(time>={until_s:e})*(time-{:e}))",
-                    2.0 * until_s,
-                    0.5 * until_s
-                ),
-                Factor::Table(_) | Factor::Oscillation { .. } => {
-                    return Err(refused(
-                        scene,
-                        part,
-                        "the path of a region is a formula, and a table of velocities has no short one",
-                        "give a table of displacements instead",
-                    ));
-                }
-            };
-            Ok(Some(velocity_m_s.map(|v| format!("{v:e}*{travelled}"))))
-        }
-        WallMotion::Displacement {
-            displacement_m,
-            angular_displacement_rad,
-            factor,
-        } => {
-            if *angular_displacement_rad != [0.0; 3] {
-                return turns();
-            }
-            let factor = formula(factor);
-            Ok(Some(displacement_m.map(|d| format!("{d:e}*{factor}"))))
-        }
-        WallMotion::Orbit(orbit) => {
-            let rate_rad_s = std::f64::consts::TAU * orbit.frequency_hz;
-            let [from, to] = [0.0, 0.25 / orbit.frequency_hz].map(|at_s| orbit.place_m(at_s));
-            Ok(Some([0, 1, 2].map(|k| {
-                format!(
-                    "({:e}*(cos({rate_rad_s:e}*time)-1)+({:e})*sin({rate_rad_s:e}*time))",
-                    from[k], to[k]
-                )
-            })))
-        }
-        WallMotion::Gyration(_) => turns(),
-        WallMotion::Servo { .. } | WallMotion::Bar { .. } | WallMotion::Weight { .. } => {
-            Err(refused(
-                scene,
-                part,
-                "a region that moves with particles around it takes no force as a target",
-                "give it a velocity or a displacement",
-            ))
-        }
-    }
+    axes.into_iter().all(is_along).then(|| {
+        [
+            [0, 1, 2].map(|k| one[k].min(other[k])),
+            [0, 1, 2].map(|k| one[k].max(other[k])),
+        ]
+    })
 }

@@ -1,9 +1,4 @@
-//! Refusals and counts in words.
-
-use std::fmt::Display;
-
-use dem_io::Diagnostic;
-use dem_scene::Scene;
+//! Numbers and regions in the words of LAMMPS.
 
 /// Cosine from which a direction counts as that of an axis.
 pub(super) const ALONG: f64 = 1.0 - 1e-12;
@@ -34,18 +29,4 @@ pub(super) fn cylinder([from, to]: [[f64; 3]; 2], radius_m: f64) -> Option<Strin
         numbers(&across),
         numbers(&ends)
     ))
-}
-
-/// The refusal of a part of a scene.
-pub(super) fn refused(
-    scene: &Scene,
-    part: impl Display,
-    why: impl Display,
-    remedy: impl Display,
-) -> Diagnostic {
-    Diagnostic::input(
-        format!("{}: {part}", scene.source),
-        format!("LAMMPS has no word for it: {why}"),
-        remedy.to_string(),
-    )
 }

@@ -50,7 +50,8 @@ pub fn report(folder: &Path, summary: &str) -> Result<String> {
         add_curves(&mut page, &folder)?;
     }
     add_inputs(&mut page, &summary, &folder);
-    if summary.has_results() {
+    // Another program does not say where its time went.
+    if summary.has_results() && summary.engine.is_none() {
         add_time(&mut page, &summary);
     }
     Ok(page.html())

@@ -64,6 +64,14 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
         }
         None => String::new(),
     };
+    if let Some(engine) = &summary.engine {
+        let simulated = show_quantity(summary.simulated_s, "s");
+        let (by, program) = (&summary.ended_by, &summary.program);
+        page.paragraph(&format!(
+            "{simulated} simulated by {engine}, ended by {by}; exported by {program}."
+        ));
+        return;
+    }
     let ended = format!(
         "{} simulated{part} in {} on {}, ended by {}; {}.",
         show_quantity(summary.simulated_s, "s"),

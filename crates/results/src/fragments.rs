@@ -31,8 +31,8 @@ pub struct FragmentRow<'a> {
     pub velocity_m_s: [f64; 3],
     /// Angular velocity, rad/s. Length 3.
     pub angular_velocity_rad_s: [f64; 3],
-    /// Sum of the forces on its particles, N. Length 3.
-    pub force_n: [f64; 3],
+    /// Sum of the forces on its particles, N. Length 3. None: not known.
+    pub force_n: Option<[f64; 3]>,
     /// Diameter of the sphere with the volume of its particles, m.
     pub equivalent_diameter_m: f64,
     /// Diagonal of the box around it, m.
@@ -60,9 +60,9 @@ impl FragmentRow<'_> {
         ("wx_rad_s", |row| number(row.angular_velocity_rad_s[0])),
         ("wy_rad_s", |row| number(row.angular_velocity_rad_s[1])),
         ("wz_rad_s", |row| number(row.angular_velocity_rad_s[2])),
-        ("fx_n", |row| number(row.force_n[0])),
-        ("fy_n", |row| number(row.force_n[1])),
-        ("fz_n", |row| number(row.force_n[2])),
+        ("fx_n", |row| force(row, 0)),
+        ("fy_n", |row| force(row, 1)),
+        ("fz_n", |row| force(row, 2)),
         ("equivalent_diameter_m", |row| {
             number(row.equivalent_diameter_m)
         }),
@@ -79,6 +79,10 @@ pub fn append_fragments(table: &mut Table, fragments: &[FragmentRow<'_>]) -> Res
         table.append(&lines(&FragmentRow::COLUMNS, some.iter().copied()))?;
     }
     Ok(())
+}
+
+fn force(row: &FragmentRow<'_>, axis: usize) -> String {
+    known(row.force_n.map(|force_n| number(force_n[axis])))
 }
 
 fn number(value: f64) -> String {

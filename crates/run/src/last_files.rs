@@ -5,7 +5,7 @@ mod film;
 pub mod flows;
 pub mod fragments;
 mod last_state;
-pub(crate) mod plots;
+pub mod plots;
 pub mod strengthening;
 mod tables;
 pub(crate) mod wall_loads;

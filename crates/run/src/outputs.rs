@@ -2,7 +2,7 @@
 
 mod discharge;
 pub mod event_table;
-mod fragments;
+pub mod fragments;
 pub(super) mod frames;
 pub(super) mod list;
 mod picture_order;

@@ -9,6 +9,7 @@ mod good;
 mod include;
 mod laboratory;
 mod options;
+mod places;
 mod properties;
 mod schema;
 mod words;

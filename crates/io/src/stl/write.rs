@@ -11,7 +11,7 @@ const HEADER: usize = 80;
 /// origin that single precision would move them.
 pub fn write_stl(header: &str, facets: &[[[f64; 3]; 3]], out: &mut dyn Write) -> io::Result<()> {
     if !single_precision_keeps(facets.iter().flatten()) {
-        return write_text(header, facets, out);
+        return write_stl_text(header, facets, out);
     }
     let mut head = [b' '; HEADER];
     for (byte, letter) in head.iter_mut().zip(header.bytes()) {
@@ -30,8 +30,12 @@ pub fn write_stl(header: &str, facets: &[[[f64; 3]; 3]], out: &mut dyn Write) ->
     Ok(())
 }
 
-/// As text, with all digits.
-fn write_text(header: &str, facets: &[[[f64; 3]; 3]], out: &mut dyn Write) -> io::Result<()> {
+/// As [`write_stl`], as text with all digits: a corner that two triangles share is the same in both.
+pub fn write_stl_text(
+    header: &str,
+    facets: &[[[f64; 3]; 3]],
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let name = header.replace(['\r', '\n'], " ");
     writeln!(out, "solid {name}")?;
     for facet in facets {

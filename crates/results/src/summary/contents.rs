@@ -311,8 +311,7 @@ impl Verdict {
 }
 
 impl Summary {
-    /// Whether the run has come so far as to have results: one that failed at its start has none,
-    /// and another program gives only frames.
+    /// Whether the run has come so far as to have results: one that failed at its start has none.
     pub fn has_results(&self) -> bool {
         !matches!(self.ended_by.as_str(), "" | "failure")
     }

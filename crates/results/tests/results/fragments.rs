@@ -19,7 +19,7 @@ fn fragment(time_s: f64, id: u32, numbers: [f64; 15]) -> FragmentRow<'static> {
         centre_m: three(1),
         velocity_m_s: three(4),
         angular_velocity_rad_s: three(7),
-        force_n: three(10),
+        force_n: Some(three(10)),
         equivalent_diameter_m: numbers[13],
         box_diagonal_m: numbers[14],
         body: "cake, \"old\"",

@@ -28,7 +28,7 @@ pub(crate) const FRAGMENT_PLOTS: [&str; 3] = [COUNT, SIZES, DISCHARGE];
 
 /// Fragmentation of the bodies: `fragments` of the clusters, and what outlets have removed; fines
 /// are part of the mass.
-pub(crate) fn fragment_summary(
+pub fn fragment_summary(
     clusters: &Clusters,
     fragments: &[Fragment],
     population: &Population,
@@ -55,7 +55,7 @@ pub(crate) fn fragment_summary(
 }
 
 /// Writes the parent of each fragment.
-pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
+pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     let row = |(id, cluster): (u32, &Cluster)| TreeRow {
         fragment_id: id,
         parent_id: cluster.parent,
@@ -70,7 +70,7 @@ pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it
 /// changes and no measure has it; and the sizes of those at the end and those discharged, if there
 /// is more than one.
-pub(crate) fn write_fragment_plots(
+pub fn write_fragment_plots(
     folder: &ResultsFolder,
     state: &State,
     fragments: &Fragments,

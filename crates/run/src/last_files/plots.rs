@@ -53,11 +53,7 @@ pub(crate) fn write_plots(
     }
     errors.y.log = true;
     folder.write_plot(ERRORS, &errors.svg().file())?;
-    if column(&series, "broken_bonds").iter().any(|v| *v != 0.0) {
-        let mut broken = plot(&series, "Broken bonds", "bonds", &["broken_bonds"], "");
-        broken.y.whole = true;
-        folder.write_plot(BROKEN, &broken.svg().file())?;
-    }
+    write_broken_plot(folder, &series)?;
     let first = series.columns.len() - probes.len();
     for (probe, name) in probes.iter().zip(&series.columns[first..]) {
         let quantity = probe.measure.quantity_name().replace('_', " ");
@@ -74,6 +70,16 @@ pub(crate) fn write_plots(
         folder.write_plot(&plot_name(probe), &one.svg().file())?;
     }
     Ok(())
+}
+
+/// Plots the number of broken bonds over time, if any broke.
+pub fn write_broken_plot(folder: &ResultsFolder, series: &Series) -> Result<()> {
+    if column(series, "broken_bonds").iter().all(|v| *v == 0.0) {
+        return Ok(());
+    }
+    let mut broken = plot(series, "Broken bonds", "bonds", &["broken_bonds"], "");
+    broken.y.whole = true;
+    folder.write_plot(BROKEN, &broken.svg().file())
 }
 
 /// The horizontal line in the plot of a measure: its reference, or else its result, if that is of

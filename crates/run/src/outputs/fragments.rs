@@ -51,7 +51,7 @@ impl Output for Fragments {
         let moving = Some((&motions[..], &moving[..]));
         let fragments = fragments(clusters, &state.particles, &state.clumps, moving);
         self.written = fragments.len() as u64;
-        let rows = rows(&fragments, state);
+        let rows = fragment_rows(&fragments, state);
         append_fragments(&mut self.table, &rows)
     }
 
@@ -61,7 +61,7 @@ impl Output for Fragments {
 }
 
 /// Fragments as rows of the table of fragments.
-fn rows<'a>(fragments: &[Fragment], state: &'a State) -> Vec<FragmentRow<'a>> {
+pub fn fragment_rows<'a>(fragments: &[Fragment], state: &'a State) -> Vec<FragmentRow<'a>> {
     let model = &state.model;
     let row = |fragment: &Fragment| FragmentRow {
         time_s: state.time_s,
@@ -72,7 +72,7 @@ fn rows<'a>(fragments: &[Fragment], state: &'a State) -> Vec<FragmentRow<'a>> {
         centre_m: fragment.centre_m,
         velocity_m_s: fragment.velocity_m_s,
         angular_velocity_rad_s: fragment.angular_velocity_rad_s,
-        force_n: fragment.force_n,
+        force_n: Some(fragment.force_n),
         equivalent_diameter_m: fragment.equivalent_diameter_m,
         box_diagonal_m: fragment.box_diagonal_m,
         body: model.body_name(fragment.body),

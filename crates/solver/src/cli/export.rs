@@ -28,7 +28,7 @@ enum Engine {
     /// Write a scene as data file and input script of LAMMPS, with a page of what is carried over
     #[command(
         mut_arg("file", |file| file.help("The scene (.toml)")),
-        after_help = "What LAMMPS has no word for is refused by name. Run the script where LAMMPS is, then read its dumps with dem-run import.\n\
+        after_help = "First pack breakable bodies without overlap: dem-pack --overlap 0. What LAMMPS has no word for is refused, all at once, with what to do about it. Run the script where LAMMPS is, then read its dumps with dem-run import.\n\
                       Example:\n  dem-run export lammps data/scenes/cantilever.toml -o bar && cd bar && mpirun -np 4 lmp -in in.lammps"
     )]
     Lammps(LammpsArguments),
@@ -71,9 +71,16 @@ fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
         ));
     }
     let (scene, bodies) = arguments.scene.read()?;
-    refuse_parts(&scene)?;
-    let (plan, _) = plan_with_test(&scene, bodies, threads, arguments.scene.force_step)?;
-    let written = dem_lammps::export(&scene, &plan, &arguments.output)?;
+    let places = arguments.scene.places()?;
+    let place_of = |key: &str| places.of(key);
+    let refusals = refuse_parts(&scene);
+    if scene.test.is_some() {
+        // Its walls and supports are not in the scene: the plan would add refusals of them.
+        refusals.check(&scene, &place_of)?;
+    }
+    let planned = plan_with_test(&scene, bodies, threads, arguments.scene.force_step);
+    let (plan, _) = planned.or_else(|error| refusals.check(&scene, &place_of).and(Err(error)))?;
+    let written = dem_lammps::export(&scene, &plan, refusals, &place_of, &arguments.output)?;
     if arguments.scene.json {
         return write_standard_json(&written);
     }
@@ -90,6 +97,7 @@ fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
             counted(written.clumps, "clump"),
             counted(written.steps as usize, "step"),
             visible(&arguments.output.display().to_string())
-        )
+        )?;
+        writeln!(out, "needs {}", written.needs)
     })
 }

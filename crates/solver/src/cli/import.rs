@@ -60,10 +60,12 @@ pub(super) fn import(arguments: &ImportArguments) -> Result<()> {
     }
     write_standard_output(|out| {
         let (frames, last_s) = (counted(came.frames, "frame"), came.last_s);
+        let broken = counted(came.broken as usize, "broken bond");
+        let fragments = counted(came.fragments, "fragment");
         let results = arguments.output.display().to_string();
         writeln!(
             out,
-            "{frames}, the last at {last_s} s -> {}",
+            "{frames}, the last at {last_s} s, {broken}, {fragments} -> {}",
             visible(&results)
         )
     })

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{BodySource, Scene, include_text, read_bodies, read_scene};
+use dem_scene::{BodySource, Places, Scene, include_text, read_bodies, read_scene};
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArguments {
@@ -66,6 +66,12 @@ impl SceneArguments {
             Some(text) if !error.place.starts_with("--") => error.within(&format!("--set {text}")),
             _ => error,
         }
+    }
+
+    /// The places of the keys of the scene.
+    pub(super) fn places(&self) -> Result<Places> {
+        let file = self.file.as_deref().unwrap_or(Path::new(""));
+        Places::read(file, &self.all_overrides())
     }
 
     /// The scene and all its bodies.

@@ -88,7 +88,8 @@ fn a_killed_import_leaves_all_or_nothing() {
     whole.write("scene.toml", super::lammps::SCENE);
     let export = ["export", "lammps", "scene.toml", "-o", "inputs", "-q"];
     assert!(within(&whole, &export).output().unwrap().status.success());
-    let (mut frames, mut bonds) = ("ITEM: UNITS\nsi\n".to_owned(), String::new());
+    let mut frames = "ITEM: UNITS\nsi\n".to_owned();
+    let (mut bonds, mut broken) = (String::new(), String::new());
     for n in 0..FRAMES {
         let bounds = "ITEM: BOX BOUNDS mm mm mm\n-1 1\n-1 1\n-1 1\n";
         let head = format!("ITEM: TIME\n{}\nITEM: TIMESTEP\n{n}\n", 1e-6 * n as f64);
@@ -102,9 +103,15 @@ fn a_killed_import_leaves_all_or_nothing() {
             "{head}ITEM: NUMBER OF ENTRIES\n1\n{bounds}ITEM: ENTRIES index c_bonds[1] c_bonds[2] c_bonds[3] \n1 2 1 1 \n"
         )
         .unwrap();
+        write!(
+            broken,
+            "{head}ITEM: NUMBER OF ENTRIES\n0\n{bounds}ITEM: ENTRIES f_broken[1] f_broken[2] f_broken[3] f_broken[4] f_broken[5] f_broken[6] \n"
+        )
+        .unwrap();
     }
     whole.write("inputs/frames.dump", frames);
     whole.write("inputs/bonds.dump", bonds);
+    whole.write("inputs/broken.dump", broken);
     let import = |bench: &Bench| within(bench, &["import", "inputs", "-o", "back", "-q"]);
     kill_often(&whole, &import, &mut |bench| {
         if bench.path("back").exists() {

@@ -3,6 +3,7 @@
 mod dumps;
 mod fed;
 mod refusals;
+mod stored;
 mod surfaces;
 
 use std::collections::BTreeMap;
@@ -63,7 +64,15 @@ impl Export {
             }
         }
         for line in text("in.lammps").lines() {
-            let words = line.split('#').next().unwrap().split_whitespace();
+            // Commands of an if are quoted, and it goes on.
+            let line = line.split('#').next().unwrap();
+            let quoted = line
+                .strip_prefix("  \"")
+                .map(|line| line.trim_end_matches(" &"));
+            let command = quoted
+                .and_then(|line| line.strip_suffix('"'))
+                .unwrap_or(line);
+            let words = command.split_whitespace();
             export.script.push(words.map(str::to_owned).collect());
         }
         export
@@ -282,6 +291,12 @@ fn contacts_and_walls_are_read_back() {
         path,
         "\"-1e0*((time<2e-3)*time*time/4e-3+(time>=2e-3)*(time-1e-3))\""
     );
+    // What holds particles comes after the walls that push them.
+    let at = |begin: &str| {
+        let line = |words: &Vec<String>| words.join(" ").starts_with(begin);
+        export.script.iter().position(line).unwrap()
+    };
+    assert!(at("fix wall_3_1") < at("fix support_1"));
     let wall = export.said("fix wall_2_1 material_1 wall/gran/region granular hertz");
     assert!(wall.ends_with("limit_damping region wall_2"), "{wall}");
     let page = fs::read_to_string(bench.path("out/README.md")).unwrap();

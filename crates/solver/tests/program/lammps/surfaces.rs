@@ -1,4 +1,4 @@
-//! Surfaces that are exported as planes, and those that are refused.
+//! Surfaces as files of triangles, and as planes for a LAMMPS without surfaces.
 
 use std::f64::consts::PI;
 
@@ -105,6 +105,8 @@ fn a_bin_becomes_one_plane_for_each_face() {
         let export = exported(&bench, "scene.toml");
         let planes = planes(&export);
         assert_eq!(planes.len(), 7);
+        // LAMMPS without surfaces goes on.
+        assert!(!export.script.iter().flatten().any(|word| word == "\"quit"));
         let whole = export.said("region wall_1 intersect");
         assert!(
             whole.starts_with("7 wall_1_part_1 wall_1_part_2 "),
@@ -128,8 +130,10 @@ fn a_bin_becomes_one_plane_for_each_face() {
         assert_eq!(floors, 1);
         let page = std::fs::read_to_string(bench.path("out/README.md")).unwrap();
         for said in [
+            "`fix surface/global` of 18 triangles (`wall-1.stl`); in LAMMPS before 4 July 2026",
             "`region intersect` of 7 planes",
             "go on upwards beyond its rim",
+            "Needs LAMMPS of 22 July 2025 or later",
         ] {
             assert!(page.contains(said), "{said}");
         }
@@ -155,7 +159,7 @@ fn a_closed_drum_becomes_planes_however_its_floor_is_meshed() {
 }
 
 #[test]
-fn a_surface_that_planes_cannot_be_is_refused_with_the_reason() {
+fn a_surface_that_planes_cannot_be_needs_surfaces_and_the_reason_is_said() {
     let (mut corners, triangles) = vessel(6, 0.03, Some(0));
     // A floor with a peak: its parts look away from each other.
     corners[12][2] = 0.01;
@@ -212,22 +216,152 @@ fn a_surface_that_planes_cannot_be_is_refused_with_the_reason() {
         ),
         (drum(250, 0), "", "it has more than 200 faces"),
         (plate, "", "it does not surround a room"),
-        (
-            bin(0.03),
-            "velocity = [1, 0, 0]",
-            "an intersection of regions, which cannot move",
-        ),
+        (bin(0.03), "velocity = [1, 0, 0]", "it moves"),
         (bin(0.03), "scale = 0.2", "there are particles outside"),
         (bin(0.03), feed, "there is an inlet outside"),
     ];
     for (surface, more, expected) in cases {
         let bench = Bench::new();
-        bench.write("bin.stl", surface);
+        bench.write("bin.stl", &surface);
+        bench.write("scene.toml", scene(more));
+        let export = exported(&bench, "scene.toml");
+        assert!(planes(&export).is_empty(), "{expected}");
+        let page = std::fs::read_to_string(bench.path("out/README.md")).unwrap();
+        let why = page.split_once("planes cannot stand for it: ").unwrap().1;
+        assert!(
+            why.lines().next().unwrap().contains(expected),
+            "{expected}: {why}"
+        );
+        assert!(page.contains("Needs LAMMPS of 4 July 2026 or later"));
+        assert!(page.contains("GRANSURF"));
+        let stop = export.said("if \"${surfaces} == 0\" then");
+        assert!(
+            stop.contains("the walls bin are surfaces") && stop.ends_with("\"quit 1\""),
+            "{stop}"
+        );
+        let fix = export.said("fix wall_1_1 material_1 surface/global");
+        let begin = "input stl 1 1 wall-1.stl model * 1 granular hertz ";
+        assert!(fix.starts_with(begin), "{fix}");
+        assert!(
+            fix.ends_with("limit_damping flat 8.10961 neighbor nsq"),
+            "{fix}"
+        );
+    }
+}
+
+/// The corners of a text STL, in their order.
+fn corners_of(text: &str) -> Vec<[f64; 3]> {
+    let corner = |line: &str| {
+        let words: Vec<f64> = (line.strip_prefix("vertex ")?.split(' '))
+            .map(|word| word.parse().unwrap())
+            .collect();
+        Some([words[0], words[1], words[2]])
+    };
+    text.lines().filter_map(corner).collect()
+}
+
+#[test]
+fn the_triangles_are_those_of_the_wall_where_it_stands() {
+    let bench = Bench::new();
+    let text = bin(0.05);
+    bench.write("bin.stl", &text);
+    let more =
+        "unit = \"mm\"\nrotation = { axis = [0, 1, 0], angle = \"90 deg\" }\npivot = [0, 0, 0]";
+    bench.write("scene.toml", scene(more).replace("unit = \"m\"\n", ""));
+    exported(&bench, "scene.toml");
+    let written = std::fs::read_to_string(bench.path("out/wall-1.stl")).unwrap();
+    let (read, found) = (corners_of(&text), corners_of(&written));
+    assert_eq!(found.len(), 18 * 3);
+    // Turned by a quarter about y. Each corner is one of them, whichever the order of the triangles.
+    let wanted: Vec<[f64; 3]> = (read.iter())
+        .map(|[x, y, z]| [1e-3 * z, 1e-3 * y, -1e-3 * x])
+        .collect();
+    for [x, y, z] in &found {
+        let is_near = |w: &[f64; 3]| {
+            (x - w[0]).abs() < 1e-9 && (y - w[1]).abs() < 1e-9 && (z - w[2]).abs() < 1e-9
+        };
+        assert!(wanted.iter().any(is_near), "{x} {y} {z}");
+    }
+    // LAMMPS joins triangles at corners that are the same to the last digit.
+    let mut different = found.clone();
+    different.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    different.dedup();
+    assert_eq!(different.len(), 13);
+}
+
+#[test]
+fn surfaces_travel_and_turn() {
+    let ramp = "velocity = [\"2 m/s\", 0, 0]\nramp = \"1 ms\"";
+    let swing = "displacement = [0, \"3 mm\", 0]\nfrequency = \"50 Hz\"";
+    let table = "displacement = [\"3 mm\", 0, 0]\ntable = [[0, 0], [\"1 ms\", 1], [\"3 ms\", 0.5]]";
+    let rate = 100.0 * PI;
+    for (more, axis, path, speed) in [
+        (
+            ramp,
+            "x",
+            "2e0*((time<1e-3)*time*time/2e-3+(time>=1e-3)*(time-5e-4))".to_owned(),
+            "2e0*((time<1e-3)*time/1e-3+(time>=1e-3))".to_owned(),
+        ),
+        (
+            swing,
+            "y",
+            format!("3e-3*(sin({rate:e}*time+(0e0))-(0e0))"),
+            format!("3e-3*({rate:e}*cos({rate:e}*time+(0e0)))"),
+        ),
+        (
+            table,
+            "x",
+            "3e-3*((time<0e0)*(0e0)+(time>=0e0)*(time<1e-3)*((0e0)+(1e3)*(time-(0e0)))+(time>=1e-3)*(time<3e-3)*((1e0)+(-2.5e2)*(time-(1e-3)))+(time>=3e-3)*(5e-1))".to_owned(),
+            "3e-3*((time>=0e0)*(time<1e-3)*(1e3)+(time>=1e-3)*(time<3e-3)*(-2.5e2))".to_owned(),
+        ),
+    ] {
+        let bench = Bench::new();
+        bench.write("bin.stl", bin(0.05));
+        bench.write("scene.toml", scene(more));
+        let export = exported(&bench, "scene.toml");
+        assert_eq!(
+            export.said("fix_modify wall_1_1"),
+            "move 1 variable v_wall_1_x v_wall_1_y v_wall_1_z v_wall_1_vx v_wall_1_vy v_wall_1_vz"
+        );
+        let formula = |name: &str| export.said(&format!("variable wall_1_{name} equal"));
+        assert_eq!(formula(axis), format!("\"{path}\""));
+        assert_eq!(formula(&format!("v{axis}")), format!("\"{speed}\""));
+    }
+    let bench = Bench::new();
+    bench.write("bin.stl", bin(0.05));
+    let turn = "pivot = [0, 0, 0.03]\nangular_velocity = [0, \"-10 rad/s\", 0]";
+    bench.write("scene.toml", scene(turn));
+    let export = exported(&bench, "scene.toml");
+    let period = 0.2 * PI;
+    assert_eq!(
+        export.said("fix_modify wall_1_1"),
+        format!("move 1 rotate 0e0 0e0 3e-2 0e0 -1e0 0e0 {period:e}")
+    );
+    for (more, expected) in [
+        (
+            "angular_velocity = [0, \"1 rad/s\", 0]\nramp = \"1 ms\"",
+            "surfaces turn steadily about a point that stands",
+        ),
+        (
+            "angular_velocity = [0, \"1 rad/s\", 0]\nvelocity = [1, 0, 0]",
+            "surfaces turn steadily about a point that stands",
+        ),
+        (
+            "surface_velocity = [\"1 m/s\", 0, 0]",
+            "its walls have no belt",
+        ),
+        (
+            "servo = { force = \"1 N\", direction = [0, 0, 1], max_velocity = \"1 m/s\" }",
+            "takes no force as a target",
+        ),
+    ] {
+        let bench = Bench::new();
+        bench.write("bin.stl", bin(0.05));
         bench.write("scene.toml", scene(more));
         let said = refused_export(&bench, &["scene.toml"]);
         assert!(
-            said.contains("[walls.bin]") && said.contains(expected),
-            "{expected}: {said}"
+            said.contains("walls.bin") && said.contains(expected),
+            "{said}"
         );
         assert!(!bench.path("out").exists());
     }
