@@ -7,6 +7,8 @@ use std::path::Path;
 use dem_io::{Diagnostic, Result, read_input};
 use dem_results::Existing;
 
+pub use super::came::Came;
+
 use super::breaks::{Break, breaks_until, check_unbroken};
 use super::dump::{Dump, Section};
 use super::exported::{Exported, read_data, refuse_strangers};
@@ -20,22 +22,6 @@ const MOTION: [&str; 9] = [
 ];
 /// What to do if a dump lacks something.
 const KEEP_DUMPS: &str = "keep the dump commands of the exported script";
-
-/// What a run of LAMMPS came to.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Came {
-    /// Frames written.
-    pub frames: usize,
-    /// Bonds that broke.
-    pub broken: u64,
-    /// Fragments at the end: an intact body is one.
-    pub fragments: usize,
-    /// Time of the last frame, and of the end of the run, s.
-    pub last_s: f64,
-    pub(crate) end_s: f64,
-    /// Whether the last frame is that of the end.
-    pub(crate) is_whole: bool,
-}
 
 /// Reads what LAMMPS left in the folder of an export, and writes it as the results of a run. The
 /// dumps are read twice: what is damaged leaves nothing behind.
@@ -206,17 +192,6 @@ fn time_s(section: &Section) -> Result<f64> {
     section
         .time_s
         .ok_or_else(|| section.refused("no time", remedy))
-}
-
-impl Came {
-    /// What is to be said of a run that has not come to its end.
-    pub fn warning(&self) -> Option<String> {
-        let Self { last_s, end_s, .. } = self;
-        let warning = format!(
-            "the frames end at {last_s} s, the run of the scene at {end_s} s: LAMMPS has stopped before, or goes on"
-        );
-        (!self.is_whole).then_some(warning)
-    }
 }
 
 fn read_manifest(folder: &Path) -> Result<Manifest> {

@@ -10,6 +10,7 @@
 
 pub mod bonds;
 mod breaks;
+mod came;
 mod clumps;
 mod contacts;
 mod data;

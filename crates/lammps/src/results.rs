@@ -25,9 +25,9 @@ use dem_runner::outputs::fragments::fragment_rows;
 use serde_json::json;
 
 use super::breaks::Break;
+use super::came::Came;
 use super::exported::Exported;
 use super::files::Manifest;
-use super::import::Came;
 use super::pieces::Pieces;
 
 /// Columns of `series.csv`: what LAMMPS leaves, at the times of the frames.
