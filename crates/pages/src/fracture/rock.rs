@@ -1,0 +1,159 @@
+//! Strengths in compression and in tension of a rock by its bonds, and the bonds of a rock that is
+//! given by its modulus, toughness and strengths.
+
+use super::material::Material;
+use super::pressed::crushed_pa;
+use super::shapes::{HEIGHT_M, Spheres};
+use super::specimen::{beam, bent, split_pa};
+use super::{FLAT_JOINT, PAGE, over, pulled, table};
+use crate::bench::{Bench, Failed};
+use crate::cells::{change, columns, mean};
+use crate::table::{Table, write};
+
+/// Spheres across, and packings.
+const ACROSS: (u32, u32) = (8, 2);
+/// The rock of the recipe: modulus, Pa, toughness, Pa sqrt(m), and tensile strength of a disc, Pa.
+const ROCK: [f64; 3] = [20e9, 1.3e6, 8e6];
+/// First guess: bonds over rock for the modulus, the fracture energy and the strength.
+const GUESS: [f64; 3] = [0.54, 0.4, 0.6];
+/// Spheres across for which its bonds are found, and with which they are tried; packings.
+const FOUND_WITH: (u32, u32) = (8, 3);
+const TRIED_WITH: [(u32, u32); 3] = [(6, 4), (8, 3), (12, 1)];
+/// Rounds in which they are found.
+const ROUNDS: usize = 3;
+
+/// Bonds in compression and tension.
+fn strengths() -> [Material; 6] {
+    let tension = "tensile_strength=5e6";
+    let shear = &format!("{tension},cohesion=20e6,friction_angle=0.6");
+    let softening = |energy: f64| Material {
+        fracture_energy_j_m2: energy,
+        ..Material::of(
+            &format!("tension, {energy} J/m2"),
+            "",
+            &format!("{tension},fracture_energy={energy}"),
+        )
+    };
+    [
+        Material::of("tension", "", tension),
+        Material::of("tension and cohesion", "", shear),
+        Material::of("parallel, the same", "model=\"parallel\",", shear),
+        Material::of("flat joint, the same", FLAT_JOINT, shear),
+        softening(40.0),
+        softening(160.0),
+    ]
+}
+
+pub(super) fn tables() -> [Table; 3] {
+    let ratios = "bonds | packings | strength in compression, MPa | \
+        of discs in tension, MPa | ratio of both";
+    let bonds = "of the rock | wanted | of the bonds | found | over that of the rock";
+    let names = [
+        "modulus, GPa",
+        "K_Ic, MPa sqrt(m)",
+        "strength of discs, MPa",
+    ];
+    let tried = "spheres across | packings | modulus off | K_Ic off | strength of discs off | \
+        strength in compression, MPa";
+    let sizes = TRIED_WITH.map(|(number, _)| number.to_string());
+    [
+        Table::new(
+            PAGE,
+            "fracture ratios",
+            ratios,
+            strengths().map(|of| of.name),
+        ),
+        Table::new(PAGE, "fracture recipe", bonds, names),
+        Table::new(PAGE, "fracture recipe", tried, sizes),
+    ]
+}
+
+/// Strengths by the models of bonds.
+pub(crate) fn ratios(bench: &Bench) -> Result<(), Failed> {
+    let mut table = table("fracture ratios", 0)?;
+    let (number, packings) = ACROSS;
+    for material in strengths() {
+        let of_seed = |seed| {
+            let spheres = Spheres::across(number, seed);
+            let crushed_pa = crushed_pa(bench, &material, spheres)?;
+            let split_pa = split_pa(bench, &material, spheres)?;
+            Ok([1e-6 * crushed_pa, 1e-6 * split_pa, crushed_pa / split_pa])
+        };
+        let rows = (1..=packings)
+            .map(of_seed)
+            .collect::<Result<Vec<_>, Failed>>()?;
+        let first = [packings.to_string()];
+        table.row(first.into_iter().chain(over(&rows, [1, 2, 2])));
+    }
+    write(&[table])
+}
+
+/// Bonds of this modulus, Pa, fracture energy, J/m2, and tensile strength, Pa.
+fn rock([young_pa, energy_j_m2, tensile_pa]: [f64; 3]) -> Material {
+    let failure = format!("tensile_strength={tensile_pa:.4e},fracture_energy={energy_j_m2:.4e}");
+    Material {
+        name: format!("{young_pa:.3e} {energy_j_m2:.3e} {tensile_pa:.3e}"),
+        bonds: format!("{{young_modulus={young_pa:.4e},poisson_ratio=0.25,failure={{{failure}}}}}"),
+        young_pa: ROCK[0],
+        strength_pa: tensile_pa,
+        fracture_energy_j_m2: energy_j_m2,
+    }
+}
+
+/// Means over packings of what `ROCK` has.
+fn measured(bench: &Bench, material: &Material, of: (u32, u32)) -> Result<[f64; 3], Failed> {
+    let of_seed = |seed| {
+        let spheres = Spheres::across(of.0, seed);
+        let [young_pa, _] = pulled(bench, material, spheres)?;
+        let specimen = beam(Some(bench), material, spheres, HEIGHT_M)?;
+        let bent = bent(&specimen, &specimen.run(bench, material)?, HEIGHT_M);
+        Ok([
+            young_pa,
+            bent.toughness,
+            split_pa(bench, material, spheres)?,
+        ])
+    };
+    let rows = (1..=of.1)
+        .map(of_seed)
+        .collect::<Result<Vec<_>, Failed>>()?;
+    Ok(columns(&rows, mean))
+}
+
+/// The bonds of a rock: modulus follows modulus, the fracture energy the square of the toughness,
+/// and strength strength. Then the same bonds with other spheres.
+pub(crate) fn recipe(bench: &Bench) -> Result<(), Failed> {
+    let of_rock = [ROCK[0], ROCK[1].powi(2) / ROCK[0], ROCK[2]];
+    let mut bonds: [f64; 3] = std::array::from_fn(|at| GUESS[at] * of_rock[at]);
+    for _ in 0..ROUNDS {
+        let found = measured(bench, &rock(bonds), FOUND_WITH)?;
+        for (at, power) in [1.0, 2.0, 1.0].into_iter().enumerate() {
+            bonds[at] *= (ROCK[at] / found[at]).powf(power);
+        }
+    }
+    let [mut derived, mut tried] = [table("fracture recipe", 0)?, table("fracture recipe", 1)?];
+    let names = [
+        "modulus, GPa",
+        "fracture energy, J/m2",
+        "tensile strength, MPa",
+    ];
+    for at in 0..3 {
+        let [of_rock_unit, of_bonds_unit] = [[1e-9, 1e-9], [1e-6, 1.0], [1e-6, 1e-6]][at];
+        derived.row([
+            format!("{}", of_rock_unit * ROCK[at]),
+            names[at].to_owned(),
+            format!("{:.2}", of_bonds_unit * bonds[at]),
+            format!("{:.3}", bonds[at] / of_rock[at]),
+        ]);
+    }
+    let material = rock(bonds);
+    for of in TRIED_WITH {
+        let found = measured(bench, &material, of)?;
+        let crushed = |seed| crushed_pa(bench, &material, Spheres::across(of.0, seed));
+        let crushed = (1..=of.1).map(crushed).collect::<Result<Vec<_>, _>>()?;
+        let mut cells = vec![of.1.to_string()];
+        cells.extend((0..3).map(|at| change(found[at] / ROCK[at] - 1.0, 1)));
+        cells.push(format!("{:.1}", 1e-6 * mean(&crushed)));
+        tried.row(cells);
+    }
+    write(&[derived, tried])
+}
