@@ -15,19 +15,19 @@ use std::f64::consts::PI;
 use dem_plots::{Axis, Line, Marks, Plot, Point};
 
 use self::formulas::{SizeEffect, beam_shape, mouth_opening};
-use self::material::Material;
+use self::material::{FLAT_JOINT, Material};
+use self::rock::PAGE;
 pub(crate) use self::rock::{ratios, recipe};
-use self::shapes::{HEIGHT_M, Spheres, WIDTH_M};
+use self::shapes::{HEIGHT_M, Spheres};
 use self::specimen::{
-    Curve, DEPTH, SPAN, Specimen, bar, beam, bent, double_cantilever, notched_disc, opened,
-    opening_stiffness,
+    Curve, DEPTH, SPAN, Specimen, beam, bent, double_cantilever, notched_disc, opened,
+    opening_stiffness, pulled,
 };
 use crate::bench::{Bench, Failed};
-use crate::cells::{change, columns, mean, scattered, thousands};
+use crate::cells::{change, columns, mean, over, scattered, thousands};
 use crate::plots::draw;
 use crate::table::{Table, write};
 
-const PAGE: &str = "tests/verification/fracture.md";
 /// Spheres across the height of the beams, and number of packings of each.
 const BEAMS: [(u32, u32); 3] = [(8, 4), (12, 3), (16, 2)];
 /// The same of double cantilevers and discs with a notch.
@@ -64,10 +64,6 @@ fn compared() -> [Material; 7] {
         Material::cohesive(),
     ]
 }
-
-/// Keys of flat joints of few elements.
-const FLAT_JOINT: &str =
-    "model=\"flat-joint\",radial_elements=1,circumferential_elements=6,joint_friction=0.6,";
 
 fn by_size(sizes: &[(u32, u32)]) -> Vec<String> {
     let rows = usual().map(|of| {
@@ -114,23 +110,6 @@ pub(crate) fn tables() -> Vec<Table> {
 fn table(words: &str, at: usize) -> Result<Table, Failed> {
     let mut own = tables().into_iter().filter(|table| table.words == words);
     Ok(own.nth(at).ok_or("no such table")?)
-}
-
-/// Modulus and strength in tension, Pa.
-fn pulled(bench: &Bench, material: &Material, spheres: Spheres) -> Result<[f64; 2], Failed> {
-    let bar = bar(bench, material, spheres)?;
-    let curve = bar.run(bench, material)?;
-    let area_m2 = WIDTH_M * HEIGHT_M;
-    let young_pa = curve.stiffness() * bar.span_m / area_m2;
-    Ok([young_pa, curve.peak_n() / area_m2])
-}
-
-/// Each column of some rows with its scatter, to so many digits.
-fn over<const N: usize>(rows: &[[f64; N]], digits: [usize; N]) -> [String; N] {
-    std::array::from_fn(|at| {
-        let column: Vec<f64> = rows.iter().map(|row| row[at]).collect();
-        scattered(&column, digits[at], "")
-    })
 }
 
 /// Beams with a notch, and bars of the same blocks.
@@ -262,7 +241,7 @@ pub(crate) fn sizes(bench: &Bench) -> Result<(), Failed> {
         let heights_m = (0..=40).map(|i| 0.025 * 16_f64.powf(f64::from(i) / 40.0));
         let curve = heights_m.map(|m| shown([m, law.strength_pa(m)]));
         lines.push(Line::dashed(
-            &format!("size effect, {}", material.name),
+            format!("size effect, {}", material.name),
             curve.collect(),
         ));
     }

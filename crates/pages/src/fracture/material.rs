@@ -7,6 +7,10 @@ const BODY_PA: f64 = 21e9;
 pub(crate) const STRENGTH_PA: f64 = 5e6;
 pub(crate) const FRACTURE_ENERGY_J_M2: f64 = 40.0;
 
+/// Keys of flat joints of few elements.
+pub(crate) const FLAT_JOINT: &str =
+    "model=\"flat-joint\",radial_elements=1,circumferential_elements=6,joint_friction=0.6,";
+
 /// A material by its bonds, and what is expected of a body of it, for the pace of the tests.
 #[derive(Debug, Clone)]
 pub(crate) struct Material {

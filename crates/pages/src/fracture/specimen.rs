@@ -135,11 +135,7 @@ pub(crate) fn cantilevers() -> Cantilevers {
 }
 
 /// The block of the beams without a notch, pulled along its length by a layer at each end.
-pub(crate) fn bar(
-    bench: &Bench,
-    material: &Material,
-    spheres: Spheres,
-) -> Result<Specimen, Failed> {
+fn bar(bench: &Bench, material: &Material, spheres: Spheres) -> Result<Specimen, Failed> {
     let length_m = LENGTH * HEIGHT_M;
     let size_m = [length_m, WIDTH_M, HEIGHT_M];
     let body = spheres.packed(Some(bench), "block-100", size_m, 4)?;
@@ -324,10 +320,16 @@ impl Curve {
 
     /// Load over the opening of the gauges between a quarter and a half of the largest load, N/m.
     pub(crate) fn stiffness(&self) -> f64 {
+        self.slope(2)
+    }
+
+    /// The same over a column.
+    fn slope(&self, column: usize) -> f64 {
         let (end, most_n) = self.peak();
         let from = |part: f64| (0..end).find(|&at| self.load_n(at) >= part * most_n);
         let [low, high] = [0.25, 0.5].map(|part| from(part).unwrap_or(0));
-        (self.load_n(high) - self.load_n(low)) / (self.rows[high][2] - self.rows[low][2])
+        let way_m = self.rows[high][column] - self.rows[low][column];
+        (self.load_n(high) - self.load_n(low)) / way_m
     }
 
     /// Work of the load up to each row, J.
@@ -345,6 +347,19 @@ impl Curve {
         let work_j = self.works_j().last().copied().unwrap_or(0.0);
         [work_j, self.rows.last().map_or(0.0, |row| row[4])]
     }
+}
+
+/// Modulus and strength in tension, Pa.
+pub(crate) fn pulled(
+    bench: &Bench,
+    material: &Material,
+    spheres: Spheres,
+) -> Result<[f64; 2], Failed> {
+    let bar = bar(bench, material, spheres)?;
+    let curve = bar.run(bench, material)?;
+    let area_m2 = WIDTH_M * HEIGHT_M;
+    let young_pa = curve.stiffness() * bar.span_m / area_m2;
+    Ok([young_pa, curve.peak_n() / area_m2])
 }
 
 /// What a beam with a notch measures.
@@ -399,9 +414,8 @@ pub(crate) fn opened(specimen: &Specimen, curve: &Curve) -> Option<Opened> {
     let works_j = curve.works_j();
     let spent_j = |at: usize| works_j[at] - 0.5 * curve.load_n(at) * curve.rows[at][1];
     let area_m2 = GROOVE_WIDTH_M * (growth_m(last) - growth_m(first));
-    let quarter = (0..first).find(|&at| curve.load_n(at) >= 0.25 * curve.peak_n())?;
     Some(Opened {
-        stiffness: curve.load_n(quarter) / curve.rows[quarter][1],
+        stiffness: curve.slope(1),
         toughness,
         work_j_m2: (spent_j(last) - spent_j(first)) / area_m2,
     })
