@@ -126,7 +126,7 @@ pub(crate) fn beams(bench: &Bench) -> Result<(), Failed> {
                 count = specimen.body.radii.len();
                 let bent = bent(&specimen, &curve, HEIGHT_M);
                 let stress_pa_n = bent.stress_pa / curve.peak_n();
-                let opening_m_n = stress_pa_n * HEIGHT_M * mouth_opening(DEPTH) / young_pa;
+                let opening_m_n = stress_pa_n * HEIGHT_M * mouth_opening(DEPTH, SPAN) / young_pa;
                 rows.push([
                     1e-9 * young_pa,
                     1e-6 * strength_pa,

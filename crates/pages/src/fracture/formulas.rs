@@ -20,11 +20,15 @@ pub(crate) fn bending_stress_pa(load_n: f64, span_m: f64, width_m: f64, height_m
     1.5 * load_n * span_m / (width_m * height_m * height_m)
 }
 
-/// Opening of the mouth of a notch over stress, height and modulus, of a beam that is bent at three
-/// points over four heights: `V = 4 sigma a v/E` (Tada et al. 2000, 2.17). The span matters little.
-pub(crate) fn mouth_opening(depth: f64) -> f64 {
-    let left = 1.0 - depth;
-    let v = 0.76 - 2.28 * depth + 3.87 * depth.powi(2) - 2.04 * depth.powi(3) + 0.66 / left.powi(2);
+/// Opening of the mouth of a notch over stress, height and modulus, `V = 4 sigma a v/E`, of a beam
+/// that is bent at three points over a span of `span` heights (Guinea et al. 1998; over four
+/// heights that of Tada et al. 2000, 2.17).
+pub(crate) fn mouth_opening(depth: f64, span: f64) -> f64 {
+    let of_span = -0.04 - 0.58 * depth + 1.47 * depth.powi(2) - 2.04 * depth.powi(3);
+    let v = 0.8 - 1.7 * depth
+        + 2.4 * depth.powi(2)
+        + 0.66 / (1.0 - depth).powi(2)
+        + 4.0 / span * of_span;
     4.0 * depth * v
 }
 
@@ -127,6 +131,16 @@ mod tests {
         // A shallow one: 1.1215 sigma sqrt(pi a).
         let shallow = beam_shape(1e-4, 1e9) / (PI * 1e-4).sqrt();
         assert!((shallow / 1.1215 - 1.0).abs() < 0.005, "{shallow}");
+    }
+
+    /// Tada et al. 2000, 2.17: `v = 0.76 - 2.28 x + 3.87 x^2 - 2.04 x^3 + 0.66/(1 - x)^2`.
+    #[test]
+    fn mouths_open_as_in_the_handbook() {
+        for x in [0.2_f64, 0.5, 0.7] {
+            let v =
+                0.76 - 2.28 * x + 3.87 * x.powi(2) - 2.04 * x.powi(3) + 0.66 / (1.0 - x).powi(2);
+            assert!((mouth_opening(x, 4.0) / (4.0 * x * v) - 1.0).abs() < 1e-12);
+        }
     }
 
     /// The derivative of the compliance is the energy release rate: `G = P^2/(2 B) dC/da = K^2/E`.
