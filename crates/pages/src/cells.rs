@@ -65,6 +65,14 @@ pub(crate) fn columns<const N: usize>(rows: &[[f64; N]], of: fn(&[f64]) -> f64) 
     std::array::from_fn(|at| of(&rows.iter().map(|row| row[at]).collect::<Vec<_>>()))
 }
 
+/// Each column of some rows with its scatter, to so many digits.
+pub(crate) fn over<const N: usize>(rows: &[[f64; N]], digits: [usize; N]) -> [String; N] {
+    std::array::from_fn(|at| {
+        let column: Vec<f64> = rows.iter().map(|row| row[at]).collect();
+        scattered(&column, digits[at], "")
+    })
+}
+
 pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);

@@ -17,6 +17,7 @@ mod calibration;
 mod calibration_cases;
 mod cells;
 mod dynamic;
+mod fracture;
 mod laboratory;
 mod packing;
 mod parameters;
@@ -42,7 +43,7 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 35] = [
+const COMMANDS: [(&str, Work); 41] = [
     ("board page", board::write),
     ("board penetration", board::penetration),
     ("board times", board::measure),
@@ -52,6 +53,12 @@ const COMMANDS: [(&str, Work); 35] = [
     ("calibration scatter", calibration::scatter),
     ("calibration sizes", calibration::sizes),
     ("dynamic heights", dynamic::heights),
+    ("fracture beams", fracture::beams),
+    ("fracture growth", fracture::growth),
+    ("fracture materials", fracture::materials),
+    ("fracture ratios", fracture::ratios),
+    ("fracture recipe", fracture::recipe),
+    ("fracture sizes", fracture::sizes),
     ("laboratory bending", laboratory::bending),
     ("laboratory disc-and-bar", laboratory::disc_and_bar),
     ("packing densify", packing::densify),

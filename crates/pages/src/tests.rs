@@ -10,7 +10,7 @@ use crate::bench::root;
 use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
-    COMMANDS, board, bulk, calibration, calibration_cases, dynamic, laboratory, packing,
+    COMMANDS, board, bulk, calibration, calibration_cases, dynamic, fracture, laboratory, packing,
     parameters, pressing, process, replacement, rocks, round_robin, self_contact, thesis,
 };
 
@@ -21,6 +21,7 @@ fn tables() -> Vec<Table> {
     all.extend(calibration::tables());
     all.extend(calibration_cases::tables());
     all.extend(dynamic::tables());
+    all.extend(fracture::tables());
     all.extend(laboratory::tables());
     all.extend(packing::tables());
     all.extend(parameters::tables().unwrap());
