@@ -91,6 +91,19 @@ struct Fast {
     has_failed: bool,
 }
 
+/// A test with the name of its rock and the word of its kind.
+type Named = (String, String, Fast);
+
+/// A rock with measured fast tests.
+pub(crate) struct Beside {
+    pub(crate) rock: &'static str,
+    /// Number of tests.
+    pub(crate) count: usize,
+    /// Means of the strengths computed by inertia alone at the strain rates of the tests, and of
+    /// those measured, MPa.
+    pub(crate) strengths_mpa: [f64; 2],
+}
+
 pub(crate) fn tables() -> [Table; 3] {
     let of = |words, head| Table::new(PAGE, words, head, ROCKS.map(|rock| rock.name));
     [
@@ -272,7 +285,7 @@ fn fast(run: &Run, rock: &Rock) -> Result<Fast, Failed> {
 }
 
 /// The tests of a table, by rock and by the words of a second column.
-fn read(file: &str, columns: [&str; 7]) -> Result<Vec<(String, String, Fast)>, Failed> {
+fn read(file: &str, columns: [&str; 7]) -> Result<Vec<Named>, Failed> {
     let text = std::fs::read_to_string(root().join(file))?;
     let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let head = lines.next().unwrap_or_default();
@@ -298,7 +311,7 @@ fn read(file: &str, columns: [&str; 7]) -> Result<Vec<(String, String, Fast)>, F
 }
 
 /// The tests of a rock that broke it.
-fn broken(all: &[(String, String, Fast)], rock: &str, kind: &str) -> Vec<Fast> {
+fn broken(all: &[Named], rock: &str, kind: &str) -> Vec<Fast> {
     let own = all.iter().filter(|(name, word, fast)| {
         name == rock && word == kind && fast.has_failed && fast.strength_mpa.is_finite()
     });
@@ -353,7 +366,7 @@ impl Trend {
 }
 
 /// The stored tests, computed and measured.
-fn stored() -> Result<[Vec<(String, String, Fast)>; 2], Failed> {
+fn stored() -> Result<[Vec<Named>; 2], Failed> {
     let computed = [
         "rock",
         "eq_20",
@@ -368,9 +381,8 @@ fn stored() -> Result<[Vec<(String, String, Fast)>; 2], Failed> {
     Ok([read(COMPUTED, computed)?, read(MEASURED, measured)?])
 }
 
-/// Rocks with measured fast tests: name, number of tests, and the means of the strengths computed
-/// by inertia alone at their strain rates, and of those measured, MPa.
-pub(crate) fn strengths_mpa() -> Result<Vec<(&'static str, usize, [f64; 2])>, Failed> {
+/// The rocks with measured fast tests.
+pub(crate) fn beside() -> Result<Vec<Beside>, Failed> {
     let [computed, measured] = stored()?;
     let of = |rock: &Rock| {
         let trend = Trend::of(&broken(&computed, rock.name, "false"), |test| {
@@ -380,7 +392,11 @@ pub(crate) fn strengths_mpa() -> Result<Vec<(&'static str, usize, [f64; 2])>, Fa
         let tests: Vec<Fast> = tests.filter(|test| trend.covers(test.rate_1_s)).collect();
         let ours: Vec<f64> = tests.iter().map(|test| trend.at(test.rate_1_s)).collect();
         let theirs: Vec<f64> = tests.iter().map(|test| test.strength_mpa).collect();
-        (!tests.is_empty()).then(|| (rock.name, tests.len(), [mean(&ours), mean(&theirs)]))
+        (!tests.is_empty()).then(|| Beside {
+            rock: rock.name,
+            count: tests.len(),
+            strengths_mpa: [mean(&ours), mean(&theirs)],
+        })
     };
     Ok(ROCKS.iter().filter_map(of).collect())
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::times;
 use crate::bench::{Failed, number, read, root};
 use crate::cells::change;
-use crate::rocks::strengths_mpa;
+use crate::rocks::{Beside, beside};
 use crate::table::rows as table_rows;
 
 /// A claim.
@@ -259,15 +259,21 @@ pub(super) fn measured() -> Result<Vec<Row>, Failed> {
 
 /// Mean strengths of rocks between bars, predicted from slow tests.
 pub(super) fn of_rocks() -> Result<Vec<Row>, Failed> {
-    let rows = strengths_mpa()?.into_iter().map(|(rock, count, [ours, theirs])| Row {
-        case: format!("[{rock} between bars, bonds calibrated on slow tests: mean strength of {count} tests, MPa](rocks.md)"),
-        source: "Rae et al. 2020".to_owned(),
-        ours: format!("{ours:.1}"),
-        theirs: format!("{theirs:.1}"),
-        error: change(ours / theirs - 1.0, 1),
-        ..Row::default()
-    });
-    Ok(rows.collect())
+    let row = |one: Beside| {
+        let Beside { rock, count, .. } = one;
+        let [ours, theirs] = one.strengths_mpa;
+        Row {
+            case: format!(
+                "[{rock} between bars, bonds calibrated on slow tests: mean strength of {count} tests, MPa](rocks.md)"
+            ),
+            source: "Rae et al. 2020".to_owned(),
+            ours: format!("{ours:.1}"),
+            theirs: format!("{theirs:.1}"),
+            error: change(ours / theirs - 1.0, 1),
+            ..Row::default()
+        }
+    };
+    Ok(beside()?.into_iter().map(row).collect())
 }
 
 /// A deviation that a table has in one of its rows.
