@@ -41,7 +41,7 @@ impl Line {
     }
 
     /// Its value at x.
-    pub(crate) fn at(&self, x: f64) -> f64 {
+    pub fn at(&self, x: f64) -> f64 {
         self.at_x0 + self.slope * (x - self.x0)
     }
 }

@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod area;
+mod doubts;
 mod drop_weight;
 mod drop_weight_sheets;
 mod failure_line;

@@ -1,5 +1,6 @@
 //! Files of an export, and what the way back needs.
 
+use dem_engine::state::model::NamedBody;
 use serde::{Deserialize, Serialize};
 
 /// Names of the files of an export, in its folder.
@@ -25,7 +26,7 @@ pub(crate) struct Manifest {
     pub steps: u64,
     pub end_s: f64,
     /// The bodies.
-    pub bodies: Vec<ExportedBody>,
+    pub bodies: Vec<NamedBody>,
     /// For each molecule, its body: number in `bodies`.
     pub body_of_molecule: Vec<u32>,
     /// For each molecule whether it is a rigid clump.
@@ -38,18 +39,6 @@ pub(crate) struct Manifest {
     pub breaks: bool,
     /// Sieves of the size distribution, m. Empty: those that its fragments suggest.
     pub sieves_m: Vec<f64>,
-}
-
-/// A body of the scene.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct ExportedBody {
-    pub name: String,
-    pub material: String,
-    /// Sizes: see `NamedBody`.
-    pub sieve_m: f64,
-    pub smallest_diameter_m: f64,
-    pub mean_diameter_m: f64,
-    pub fine_fraction: f64,
 }
 
 /// A body that an inlet feeds.

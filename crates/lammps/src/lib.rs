@@ -42,9 +42,8 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 use serde::Serialize;
 
-use self::files::{CLUMPS, DATA, ExportedBody, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES};
+use self::files::{CLUMPS, DATA, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES};
 use self::refusals::Refusals;
-use dem_engine::state::model::NamedBody;
 use dem_plan::Plan;
 
 /// Counts of what has been written, and what it needs.
@@ -99,7 +98,7 @@ pub fn export(
         scene: scene.source.clone(),
         steps,
         end_s: scene.run.end_time_s,
-        bodies: plan.state.model.bodies.iter().map(exported_body).collect(),
+        bodies: plan.state.model.bodies.clone(),
         body_of_molecule: molecules.bodies.clone(),
         is_clump: molecules.are_clumps.clone(),
         fed: feeds.iter().map(|feed| fed_body(plan, feed)).collect(),
@@ -148,17 +147,6 @@ pub fn export(
         steps,
         needs: page::needs(&walls),
     })
-}
-
-fn exported_body(body: &NamedBody) -> ExportedBody {
-    ExportedBody {
-        name: body.name.clone(),
-        material: body.material.clone(),
-        sieve_m: body.sieve_m,
-        smallest_diameter_m: body.smallest_diameter_m,
-        mean_diameter_m: body.mean_diameter_m,
-        fine_fraction: body.fine_fraction,
-    }
 }
 
 fn fed_body(plan: &Plan, feed: &feeds::Feed) -> FedBody {

@@ -7,14 +7,13 @@ use std::ops::Range;
 use dem_engine::state::State;
 use dem_engine::state::bonds::Bonds;
 use dem_engine::state::clusters::{Clusters, Split};
-use dem_engine::state::model::NamedBody;
 use dem_engine::state::particles::Particles;
 use dem_physics::bond::stiffness::Stiffness;
 
 use super::breaks::Break;
 use super::dump::Section;
 use super::exported::Exported;
-use super::files::{ExportedBody, Manifest};
+use super::files::Manifest;
 
 /// What joins particles here: only whether it is broken matters.
 const JOINED: Stiffness = Stiffness {
@@ -58,7 +57,7 @@ impl Pieces {
         let step_s = manifest.end_s / manifest.steps as f64;
         let mut state = State::new(particles, bonds, step_s, 1);
         state.clusters = Some(clusters);
-        state.model.bodies = manifest.bodies.iter().map(named).collect();
+        state.model.bodies = manifest.bodies.clone();
         Self {
             state,
             is_broken: vec![false; exported.bonds.len()],
@@ -148,16 +147,5 @@ fn set_bodies(
     for i in some {
         let molecule = exported.molecules[i] as usize;
         clusters.set_body(&[i as u32], manifest.body_of_molecule[molecule - 1]);
-    }
-}
-
-fn named(body: &ExportedBody) -> NamedBody {
-    NamedBody {
-        name: body.name.clone(),
-        material: body.material.clone(),
-        sieve_m: body.sieve_m,
-        smallest_diameter_m: body.smallest_diameter_m,
-        mean_diameter_m: body.mean_diameter_m,
-        fine_fraction: body.fine_fraction,
     }
 }

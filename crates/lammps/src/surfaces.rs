@@ -1,7 +1,8 @@
 //! Surfaces as planes: those that are convex as seen from within.
 //!
-//! Before 4 July 2026, LAMMPS has no triangles for granular walls. A surface whose faces all look at each other, such
-//! as a bin or a closed box, is the intersection of the half-spaces in front of its faces.
+//! Before 4 July 2026, LAMMPS has no triangles for granular walls. A surface whose faces all look at
+//! each other, such as a bin or a closed box, is the intersection of the half-spaces in front of
+//! its faces.
 
 use nalgebra::Vector3;
 

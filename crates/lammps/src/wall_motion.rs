@@ -1,5 +1,5 @@
-//! Motions of walls as formulas of the time: of regions, which travel, and of surfaces, which travel
-//! or turn.
+//! Motions of walls as formulas of the time: of regions, which travel, and of surfaces, which
+//! travel or turn.
 //!
 //! <https://docs.lammps.org/region.html>, `fix_modify move` of
 //! <https://docs.lammps.org/fix_surface_global.html>
@@ -41,7 +41,7 @@ pub(super) fn moves(
     motion: &WallMotion,
     refusals: &mut Refusals,
 ) -> Option<Option<Formulas>> {
-    if turns(motion) {
+    if motion.turns() {
         refusals.add(
             part,
             "the exported regions move, but do not turn",
@@ -60,7 +60,7 @@ pub(super) fn surface_motion(
     refusals: &mut Refusals,
 ) -> Option<SurfaceMotion> {
     let motion = &wall.model.motion;
-    if turns(motion) {
+    if motion.turns() {
         let turn = steady_turn(motion, wall.frame.position_m);
         if turn.is_none() {
             refusals.add(
@@ -78,19 +78,6 @@ pub(super) fn surface_motion(
             velocity_m_s,
         },
     })
-}
-
-/// Whether a wall turns.
-fn turns(motion: &WallMotion) -> bool {
-    match motion {
-        WallMotion::Velocity { spin_rad_s, .. } => *spin_rad_s != [0.0; 3],
-        WallMotion::Displacement {
-            angular_displacement_rad,
-            ..
-        } => *angular_displacement_rad != [0.0; 3],
-        WallMotion::Gyration(_) => true,
-        _ => false,
-    }
 }
 
 /// Point, axis and period of a wall that turns steadily about its pivot, which stands.

@@ -21,7 +21,7 @@ use dem_engine::state::walls::Wall;
 use dem_io::units::significant;
 use dem_physics::geometry::mesh::Mesh;
 use dem_physics::geometry::one_surface::ALIKE;
-use dem_physics::geometry::{Bounds, Shape, SolidBox};
+use dem_physics::geometry::{Shape, SolidBox};
 use dem_plan::Plan;
 
 /// A wall in the words of LAMMPS.
@@ -198,17 +198,11 @@ fn holds_all(plan: &Plan, faces: Vec<Face>) -> Result<Vec<Face>, String> {
         .inlets
         .iter()
         .map(|inlet| &rules.regions[inlet.region]);
-    let mut corners = of_inlets.flat_map(|region| corners_of(&region.bounds()));
+    let mut corners = of_inlets.flat_map(|region| region.bounds().corners().map(Vector3::from));
     if !corners.all(|corner| is_in(&corner)) {
         return Err("there is an inlet outside".to_owned());
     }
     Ok(faces)
-}
-
-/// The corners of a box, m.
-fn corners_of(bounds: &Bounds) -> [Vector3<f64>; 8] {
-    let ends = [bounds.low, bounds.high];
-    std::array::from_fn(|n| Vector3::from([0, 1, 2].map(|k| ends[n >> k & 1][k])))
 }
 
 /// The corners of a box along the axes. None: it is turned.

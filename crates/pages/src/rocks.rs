@@ -3,10 +3,11 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use dem_calibration::read_record;
-use dem_plots::{Line, Marks, Plot, Point};
+use dem_laboratory::Line;
+use dem_plots::{Line as PlotLine, Marks, Plot, Point};
 
 use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, root, sets};
 use crate::cells::{change, ends, mean, range, scattered};
@@ -200,46 +201,60 @@ fn calibrated(rock: &Rock, record: &Path) -> Result<Vec<String>, Failed> {
 /// Loads the calibrated rocks between bars, and stores what came out.
 pub(crate) fn load(bench: &Bench) -> Result<(), Failed> {
     let mut text = "rock,eq_20,seed,striker_m_s,strain_rate_1_s,strength_mpa,absorbed_j_kg,coarser_than_6_3_mm,failed\n".to_owned();
+    let bodies = (1..=SEEDS).map(|seed| fast_body(bench, seed));
+    let bodies: Vec<PathBuf> = bodies.collect::<Result<_, Failed>>()?;
     for rock in &ROCKS {
-        for seed in 1..=SEEDS {
-            let mut words = vec!["tests/rocks/fast.stl".to_owned(), format!("--seed={seed}")];
-            words.extend(PACKING.map(str::to_owned));
-            let packed = bench.packed(&format!("fast-{seed}"), &words)?;
+        for (seed, body) in (1..).zip(&bodies) {
             for (_, strengthens) in WAYS {
                 for rate_1_s in RATES_1_S {
-                    let striker_m_s = striker_m_s(rock, rate_1_s);
-                    let set = sets(&[
-                        format!("test.striker.velocity=\"{striker_m_s} m/s\""),
-                        format!("bodies.rock.body_density=\"{} kg/m3\"", rock.density_kg_m3),
-                        format!("test.strength=\"{} MPa\"", rock.strength_mpa[0]),
-                        "bonds.rock.damping={damping_ratio=0.05}".to_owned(),
-                        format!("bonds.rock.failure.rate_strengthening={strengthens}"),
-                        "output.frames=\"10 s\"".to_owned(),
-                    ]);
-                    let mut options = set;
-                    options.push(body("rock", &packed));
-                    options.push(format!("--material={}", material(rock)));
-                    options.push(ONE_THREAD.to_owned());
-                    let name = format!("{}-{seed}-{strengthens}-{rate_1_s}", rock.name);
-                    let run =
-                        bench.run(&name.replace(' ', "-"), "tests/rocks/fast.toml", &options)?;
-                    let fast = fast(&run, rock)?;
-                    writeln!(
-                        text,
-                        "{},{strengthens},{seed},{striker_m_s},{:.2},{:.3},{:.1},{:.4},{}",
-                        rock.name,
-                        fast.rate_1_s,
-                        fast.strength_mpa,
-                        fast.absorbed_j_kg,
-                        fast.coarse,
-                        if fast.has_failed { "yes" } else { "no" }
-                    )?;
+                    text += &loaded(bench, rock, (seed, body), strengthens, rate_1_s)?;
                 }
             }
         }
     }
     std::fs::write(root().join(COMPUTED), text)?;
     page(bench)
+}
+
+/// A packing of the cylinder between the bars.
+fn fast_body(bench: &Bench, seed: u32) -> Result<PathBuf, Failed> {
+    let mut words = vec!["tests/rocks/fast.stl".to_owned(), format!("--seed={seed}")];
+    words.extend(PACKING.map(str::to_owned));
+    bench.packed(&format!("fast-{seed}"), &words)
+}
+
+/// Loads a rock, packed with this seed, at about this rate. Returns its row of the stored tests.
+fn loaded(
+    bench: &Bench,
+    rock: &Rock,
+    (seed, packed): (u32, &Path),
+    strengthens: bool,
+    rate_1_s: f64,
+) -> Result<String, Failed> {
+    let striker_m_s = striker_m_s(rock, rate_1_s);
+    let mut options = sets(&[
+        format!("test.striker.velocity=\"{striker_m_s} m/s\""),
+        format!("bodies.rock.body_density=\"{} kg/m3\"", rock.density_kg_m3),
+        format!("test.strength=\"{} MPa\"", rock.strength_mpa[0]),
+        "bonds.rock.damping={damping_ratio=0.05}".to_owned(),
+        format!("bonds.rock.failure.rate_strengthening={strengthens}"),
+        "output.frames=\"10 s\"".to_owned(),
+    ]);
+    options.push(body("rock", packed));
+    options.push(format!("--material={}", material(rock)));
+    options.push(ONE_THREAD.to_owned());
+    let name = format!("{}-{seed}-{strengthens}-{rate_1_s}", rock.name);
+    let run = bench.run(&name.replace(' ', "-"), "tests/rocks/fast.toml", &options)?;
+    let fast = fast(&run, rock)?;
+    Ok(format!(
+        "{},{strengthens},{seed},{striker_m_s},{:.2},{:.3},{:.1},{:.4},{}\n",
+        rock.name,
+        fast.rate_1_s,
+        fast.strength_mpa,
+        fast.absorbed_j_kg,
+        fast.coarse,
+        if fast.has_failed { "yes" } else { "no" }
+    ))
 }
 
 /// Speed of the striker that loads a rock at about this rate, with 1.3 times its slow strength: the
@@ -320,43 +335,21 @@ fn broken(all: &[Named], rock: &str, kind: &str) -> Vec<Fast> {
     own
 }
 
-/// A line fitted by least squares to a quantity over the strain rate, and its standard deviation.
+/// A line fitted to a quantity over the strain rate, and the rates that it covers.
 #[derive(Clone, Copy)]
 struct Trend {
-    at_mean: f64,
-    slope: f64,
-    mean_1_s: f64,
-    scatter: f64,
+    line: Line,
     rates_1_s: [f64; 2],
 }
 
 impl Trend {
     fn of(tests: &[Fast], value: fn(&Fast) -> f64) -> Option<Self> {
-        if tests.len() < 3 {
-            return None;
-        }
         let rates: Vec<f64> = tests.iter().map(|test| test.rate_1_s).collect();
         let values: Vec<f64> = tests.iter().map(value).collect();
-        let (mean_1_s, at_mean) = (mean(&rates), mean(&values));
-        let squares: f64 = rates.iter().map(|rate| (rate - mean_1_s).powi(2)).sum();
-        let products = rates
-            .iter()
-            .zip(&values)
-            .map(|(rate, v)| (rate - mean_1_s) * (v - at_mean));
-        let slope = products.sum::<f64>() / squares;
-        let off = rates.iter().zip(&values);
-        let off = off.map(|(rate, v)| (v - at_mean - slope * (rate - mean_1_s)).powi(2));
-        Some(Self {
-            at_mean,
-            slope,
-            mean_1_s,
-            scatter: (off.sum::<f64>() / (tests.len() - 2) as f64).sqrt(),
+        (tests.len() >= 3).then(|| Self {
+            line: Line::fitted(&rates, &values),
             rates_1_s: ends(&rates),
         })
-    }
-
-    fn at(&self, rate_1_s: f64) -> f64 {
-        self.at_mean + self.slope * (rate_1_s - self.mean_1_s)
     }
 
     fn covers(&self, rate_1_s: f64) -> bool {
@@ -390,7 +383,10 @@ pub(crate) fn beside() -> Result<Vec<Beside>, Failed> {
         })?;
         let tests = broken(&measured, rock.name, "SHPB").into_iter();
         let tests: Vec<Fast> = tests.filter(|test| trend.covers(test.rate_1_s)).collect();
-        let ours: Vec<f64> = tests.iter().map(|test| trend.at(test.rate_1_s)).collect();
+        let ours: Vec<f64> = tests
+            .iter()
+            .map(|test| trend.line.at(test.rate_1_s))
+            .collect();
         let theirs: Vec<f64> = tests.iter().map(|test| test.strength_mpa).collect();
         (!tests.is_empty()).then(|| Beside {
             rock: rock.name,
@@ -421,12 +417,13 @@ pub(crate) fn page(_: &Bench) -> Result<(), Failed> {
                     cells.push(String::new());
                     continue;
                 };
-                let strength_mpa = trend.at(rate_1_s);
+                let strength_mpa = trend.line.at(rate_1_s);
                 // Two standard deviations, of the packings and of the slow tests.
                 let [slow_mpa, slow_scatter_mpa] = rock.strength_mpa;
                 let band_mpa = 2.0
                     * trend
-                        .scatter
+                        .line
+                        .residual
                         .hypot(strength_mpa * slow_scatter_mpa / slow_mpa);
                 cells.push(format!("{strength_mpa:.0} ± {band_mpa:.0} MPa"));
                 let [low, high] = [strength_mpa - band_mpa, strength_mpa + band_mpa];
@@ -456,7 +453,7 @@ fn comparison(tests: &[Fast], inertia: &[Fast], strengths: [Option<Trend>; 2]) -
         };
         let there = tests.iter().filter(|test| trend.covers(test.rate_1_s));
         let ratios: Vec<f64> = there
-            .map(|test| value(test) / trend.at(test.rate_1_s))
+            .map(|test| value(test) / trend.line.at(test.rate_1_s))
             .collect();
         let ratios: Vec<f64> = ratios
             .into_iter()
@@ -514,7 +511,7 @@ fn plot(rock: &Rock, computed: &[Vec<Fast>; 2], measured: &[Fast]) -> Result<(),
         .map(|test| test.rate_1_s);
     let [_, most_1_s] = ends(&rates.collect::<Vec<_>>());
     let slow_pa = 1e6 * rock.strength_mpa[0];
-    let slow = Line::dashed(
+    let slow = PlotLine::dashed(
         "slow strength, calibrated",
         vec![[0.0, slow_pa], [most_1_s, slow_pa]],
     );

@@ -1,7 +1,7 @@
 //! The quality of bonded bodies: warnings of the programs that made them, those about bodies that
 //! no program has looked at, and bodies with few particles across.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use dem_io::Body;
 use dem_io::body::few_across;
@@ -11,7 +11,9 @@ use dem_scene::{BodySource, Scene};
 use nalgebra::Vector3;
 
 use super::bodies::stays_rigid;
+use dem_engine::stages::search::neighbours::near_pairs;
 use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
+use dem_engine::state::particles::Pose;
 
 /// As dem-pack: number of bonds per particle below which a body is hardly rigid.
 const ENOUGH_BONDS: f64 = 3.0;
@@ -156,28 +158,24 @@ fn faults(body: &Body) -> Vec<String> {
 
 /// Spheres that stand nearly in the same place as another: their mass counts twice.
 fn doubled(body: &Body) -> Option<String> {
-    let cell_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
-    let cell = |place: &[f64; 3]| place.map(|x| (x / cell_m).floor() as i64);
-    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-    let (mut first, mut count) = (None, 0);
-    for (i, (place, radius_m)) in body.positions.iter().zip(&body.radii).enumerate() {
-        let [x, y, z] = cell(place);
-        let around =
-            (-1..=1).flat_map(|p| (-1..=1).flat_map(move |q| (-1..=1).map(move |r| [p, q, r])));
-        let near = around.filter_map(|[p, q, r]| cells.get(&[x + p, y + q, z + r]));
-        let other = near.flatten().copied().find(|&j| {
-            let apart_m = (Vector3::from(*place) - Vector3::from(body.positions[j])).norm();
-            let overlap_m = radius_m + body.radii[j] - apart_m;
-            overlap_m > DOUBLED * radius_m.min(body.radii[j])
-        });
-        if let Some(j) = other {
-            first = first.or(Some([j, i]));
-            count += 1;
+    let pose = |(place, radius_m): (&[f64; 3], &f64)| {
+        let [x, y, z] = *place;
+        Pose {
+            position_m: [x, y, z, *radius_m],
+            turned: [0.0, 0.0, 0.0, 1.0],
         }
-        cells.entry([x, y, z]).or_default().push(i);
-    }
-    let [j, i] = first?;
-    let such = match count {
+    };
+    let poses: Vec<Pose> = body.positions.iter().zip(&body.radii).map(pose).collect();
+    let each: Vec<u32> = (0..poses.len() as u32).collect();
+    let mut pairs = near_pairs(&poses, &each, 0.0);
+    pairs.retain(|pair| {
+        let [a, b] = pair.map(|i| &poses[i as usize]);
+        let [one_m, other_m] = [a, b].map(Pose::radius_m);
+        let overlap_m = one_m + other_m - (a.place() - b.place()).norm();
+        overlap_m > DOUBLED * one_m.min(other_m)
+    });
+    let [j, i] = *pairs.first()?;
+    let such = match pairs.len() {
         1 => String::new(),
         many => format!(", the first of {many} such pairs"),
     };

@@ -2,7 +2,7 @@
 //! without an effect.
 
 use dem_io::units::{show_length, significant};
-use dem_scene::{BondKind, Contact, ContactLaw, Material, Scene, Statistic, WallMotion};
+use dem_scene::{BondKind, Contact, ContactLaw, Material, Scene, Statistic};
 use nalgebra::Vector3;
 
 use super::masses::sphere_density_kg_m3;
@@ -377,17 +377,8 @@ fn without_effect(scene: &Scene, state: &State) -> Vec<String> {
         );
     }
     for (name, wall) in &scene.walls {
-        let turns = match &wall.motion {
-            WallMotion::Velocity { spin_rad_s, .. } => *spin_rad_s != [0.0; 3],
-            WallMotion::Displacement {
-                angular_displacement_rad,
-                ..
-            } => *angular_displacement_rad != [0.0; 3],
-            WallMotion::Gyration(_) => true,
-            _ => false,
-        };
         let is_measured = scene.measures.values().any(|measure| measure.of == *name);
-        let is_used = turns || wall.rotation_rad != [0.0; 3] || is_measured;
+        let is_used = wall.motion.turns() || wall.rotation_rad != [0.0; 3] || is_measured;
         if wall.pivot_m != [0.0; 3] && !is_used {
             notes.push(format!(
                 "walls.{name}.pivot has no effect: the wall neither has a rotation nor turns"

@@ -3,9 +3,9 @@
 //!
 //! Study -> [`expand`] runs, with [`packings`] of their own -> [`jobs`] processes with a folder each
 //! -> [`collect`] their outcomes -> [`response`]s; `judge` errors (of distributions: [`masses`], of
-//! tests: [`curves`]) -> `table` medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s and
-//! [`response_plot`]s, [`want`] the fastest run that is accurate enough. [`search`] adds points to
-//! the study until the value that is looked for is found. A [`design`] moves parameters within
+//! tests: [`curves`]) -> `table` medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s
+//! and [`response_plot`]s, [`want`] the fastest run that is accurate enough. [`search`] adds points
+//! to the study until the value that is looked for is found. A [`design`] moves parameters within
 //! ranges ([`morris`], [`one_at_a_time`]); the [`ranking`] shows what each of them changes. The
 //! [`probability`] of an outcome is a curve over a parameter.
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::bonds::BondRule;
 use super::clumps::Template;
@@ -12,7 +12,7 @@ use super::sleep::SleepRule;
 use super::walls::WallModel;
 
 /// A body of the scene.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NamedBody {
     /// Its name.
     pub name: String,

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use dem_laboratory::Line;
+
 /// Shape function k of a beam with a notch of `depth` (over its height) bent at three points over a
 /// span of `span` heights: `K_I = sigma sqrt(D) k`, with the stress of the beam without notch,
 /// `sigma = 3 P S/(2 B D^2)`. Within 0.5 % for spans from 2.5 heights on, any depth
@@ -79,17 +81,10 @@ impl SizeEffect {
     /// The law through points of size, m, and nominal strength, Pa. None: they do not fall with the
     /// size.
     pub(crate) fn of(points: &[[f64; 2]]) -> Option<Self> {
-        let count = points.len() as f64;
-        let inverse = |[_, stress]: &[f64; 2]| stress.powi(-2);
-        let x = points.iter().map(|point| point[0]).sum::<f64>() / count;
-        let y = points.iter().map(inverse).sum::<f64>() / count;
-        let (mut up, mut down) = (0.0, 0.0);
-        for point in points {
-            up += (point[0] - x) * (inverse(point) - y);
-            down += (point[0] - x).powi(2);
-        }
-        let slope = up / down;
-        let start = y - slope * x;
+        let sizes: Vec<f64> = points.iter().map(|point| point[0]).collect();
+        let inverse: Vec<f64> = points.iter().map(|point| point[1].powi(-2)).collect();
+        let line = Line::fitted(&sizes, &inverse);
+        let (slope, start) = (line.slope, line.at(0.0));
         (slope > 0.0 && start > 0.0).then(|| Self {
             small_pa: start.powf(-0.5),
             transition_m: start / slope,

@@ -80,6 +80,21 @@ pub enum WallMotion {
     },
 }
 
+impl WallMotion {
+    /// Whether the wall turns.
+    pub fn turns(&self) -> bool {
+        match self {
+            Self::Velocity { spin_rad_s, .. } => *spin_rad_s != [0.0; 3],
+            Self::Displacement {
+                angular_displacement_rad,
+                ..
+            } => *angular_displacement_rad != [0.0; 3],
+            Self::Gyration(_) => true,
+            _ => false,
+        }
+    }
+}
+
 table_schema! {
     /// A servo-controlled wall: it moves along a direction such that it exerts a given force.
     pub(crate) static SERVO = "Servo";
