@@ -12,6 +12,7 @@
 
 mod bench;
 mod board;
+mod bodies;
 mod bulk;
 mod calibration;
 mod calibration_cases;
@@ -43,10 +44,11 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 41] = [
+const COMMANDS: [(&str, Work); 42] = [
     ("board page", board::write),
     ("board penetration", board::penetration),
     ("board times", board::measure),
+    ("bodies", bodies::bodies),
     ("bulk heaps", bulk::heaps),
     ("bulk route", bulk::route),
     ("calibration cases", calibration_cases::cases),

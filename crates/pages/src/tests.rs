@@ -10,13 +10,14 @@ use crate::bench::root;
 use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
-    COMMANDS, board, bulk, calibration, calibration_cases, dynamic, fracture, laboratory, packing,
-    parameters, pressing, process, replacement, rocks, round_robin, self_contact, thesis,
+    COMMANDS, board, bodies, bulk, calibration, calibration_cases, dynamic, fracture, laboratory,
+    packing, parameters, pressing, process, replacement, rocks, round_robin, self_contact, thesis,
 };
 
 fn tables() -> Vec<Table> {
     let mut all = Vec::new();
     all.extend(board::tables().unwrap());
+    all.push(bodies::table());
     all.extend(bulk::tables());
     all.extend(calibration::tables());
     all.extend(calibration_cases::tables());
@@ -43,6 +44,7 @@ fn pages() -> Vec<PathBuf> {
         "doc/inside",
         "tests/verification",
         "tests/calibrations",
+        "data/bodies",
     ] {
         let files = std::fs::read_dir(root().join(folder)).unwrap();
         let names = files.map(|file| Path::new(folder).join(file.unwrap().file_name()));

@@ -143,6 +143,7 @@ pub fn plan(
     refuse_endless_fall(scene)?;
     let Quality {
         mut warnings,
+        notes: of_specimens,
         coarse,
     } = quality::of_bodies(scene, &read);
     let ball_m = ball_m(scene, &read);
@@ -163,6 +164,7 @@ pub fn plan(
     start(scene, &groups, &bodies, &mut state)?;
     state.loads = loads(scene, &groups, &state.supports)?;
     let mut notes = scene.notes.clone();
+    notes.extend(of_specimens);
     notes.extend(masses::notes(scene, &masses));
     state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];

@@ -31,10 +31,16 @@ const SAME_DIAMETER: f64 = 0.1;
 /// 15, or 6.7 and 4.2, modulus and strength differ by some 15 %.
 const SAME_ACROSS: f64 = 0.02;
 
+/// Particles across from which a test measures the material that its bonds and spheres make: moduli
+/// of packings then scatter by less than 2 % (doc/sphere-size.md).
+const ENOUGH_IN_A_TEST: f64 = 5.0;
+
 /// What is said about the quality of the bodies of a scene, a sentence each.
 #[derive(Debug, Default)]
 pub(super) struct Quality {
     pub(super) warnings: Vec<String>,
+    /// On specimens of tests, whose results hold for bonds with spheres of this size.
+    pub(super) notes: Vec<String>,
     /// On bodies with few particles across, whose results depend on the particles.
     pub(super) coarse: Vec<String>,
 }
@@ -66,11 +72,24 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
             Calibrated::Here => None,
             Calibrated::Elsewhere(across) => Some(across),
         };
-        quality
-            .coarse
-            .extend(coarse.map(|text| format!("{named}: {text}")));
+        match (coarse, specimen_across(scene, name, body)) {
+            (None, _) => {}
+            (Some(text), None) => quality.coarse.push(format!("{named}: {text}")),
+            (Some(_), Some(across)) => quality.notes.push(format!(
+                "{named}: {} particles across: modulus and strength of the test are those of these bonds with spheres of this size; dem-run calibrate finds the bonds for a measured curve",
+                significant(across, 2)
+            )),
+        }
     }
     quality
+}
+
+/// Particles across a body whose test measures what its bonds and spheres make. None: it is in no
+/// test, or too few are across.
+fn specimen_across(scene: &Scene, name: &str, body: &Body) -> Option<f64> {
+    scene.test.as_ref().filter(|test| test.body == name)?;
+    let across = body.about.particles_across?;
+    (across.round() >= ENOUGH_IN_A_TEST).then_some(across)
 }
 
 /// A body and its file, if it is from one, for a sentence.

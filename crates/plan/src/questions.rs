@@ -9,7 +9,6 @@ use super::masses::sphere_density_kg_m3;
 use super::measure::measurement::Measurement;
 use super::unfinished::unfinished;
 use super::walls::{crossings, shaking};
-use dem_engine::check::validity::LARGEST_OVERLAP;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
 use dem_engine::state::contacts::ContactHistory;
@@ -24,6 +23,8 @@ const LARGEST_TABOR: f64 = 5.0;
 const LARGEST_BRIDGES: [f64; 2] = [1.001e-3, 0.1];
 /// Largest surface tension that is not questioned, N/m: molten tungsten has 2.5.
 const LARGEST_TENSION_N_M: f64 = 3.0;
+/// Largest overlap at the start, over the smaller radius, that is not questioned as an origin.
+const LARGEST_ORIGIN: f64 = 0.3;
 /// Largest coefficient of friction that is not questioned: rubber has about 1.2.
 const LARGEST_FRICTION: f64 = 3.0;
 /// Gravity above which its unit is questioned, m/s2.
@@ -163,10 +164,10 @@ fn sunk(state: &State, bodies: &[PlacedBody]) -> Option<String> {
         })
     });
     let (ratio, touch, wall) = touches.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (ratio > LARGEST_OVERLAP).then(|| {
+    (ratio > LARGEST_ORIGIN).then(|| {
         let [x, y, z, _] = state.particles.poses[touch.particle as usize].position_m;
         format!(
-            "at the start {} stands {} of its radius deep in the wall '{}', at ({}, {}, {}) m, and run.initial_overlap = \"relax\" makes this the origin of their law: overlaps count from there, up to about {LARGEST_OVERLAP} of the radius is usual; move the body out of the wall",
+            "at the start {} stands {} of its radius deep in the wall '{}', at ({}, {}, {}) m, and run.initial_overlap = \"relax\" makes this the origin of their law: overlaps count from there, up to about {LARGEST_ORIGIN} of the radius is usual; move the body out of the wall",
             called(bodies, &state.clumps, touch.particle),
             significant(ratio, 3),
             wall.model.name,
@@ -188,13 +189,13 @@ fn sunk_in_each_other(state: &State, bodies: &[PlacedBody]) -> Option<String> {
         (history.origin_m() / radius_m(a).min(radius_m(b)), [a, b])
     };
     let deep = contacts.pairs.iter().zip(&contacts.histories).map(depth);
-    let deep = deep.filter(|(ratio, _)| *ratio > LARGEST_OVERLAP);
+    let deep = deep.filter(|(ratio, _)| *ratio > LARGEST_ORIGIN);
     let mut deep: Vec<(f64, [u32; 2])> = deep.collect();
     deep.sort_by(|one, other| other.0.total_cmp(&one.0));
     let (ratio, [a, b]) = (deep.into_iter())
         .find(|(_, [a, b])| body_of(*a).is_none() || body_of(*a) != body_of(*b))?;
     Some(format!(
-        "at the start {} and {} stand {} of a radius in each other, and run.initial_overlap = \"relax\" makes this the origin of their law: overlaps count from there, up to about {LARGEST_OVERLAP} of the radius is usual; move the bodies apart",
+        "at the start {} and {} stand {} of a radius in each other, and run.initial_overlap = \"relax\" makes this the origin of their law: overlaps count from there, up to about {LARGEST_ORIGIN} of the radius is usual; move the bodies apart",
         called(bodies, &state.clumps, a),
         called(bodies, &state.clumps, b),
         significant(ratio, 3),

@@ -13,7 +13,7 @@ use self::still_flying::{Flying, still_flying};
 use super::monitors::{Extreme, Monitors};
 use super::taken_in::needed_j_kg;
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
-use dem_engine::check::validity::{overlap_warning, plastic_strain_warning, strain_warning};
+use dem_engine::check::validity::{indentation_warning, plastic_strain_warning, strain_warning};
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments::Fragment;
@@ -116,11 +116,11 @@ impl Monitors {
                 extreme.between
             )
         };
-        let (strain, overlap) = (&self.bond_strain, &self.overlap);
+        let (strain, pressed) = (&self.bond_strain, &self.indentation);
         let yielded = &self.plastic_strain;
         let strained = strain_warning(strain.largest, &where_(strain));
         let yielded = plastic_strain_warning(yielded.largest, &where_(yielded));
-        let pressed = overlap_warning(overlap.largest, &where_(overlap));
+        let pressed = indentation_warning(pressed.largest, &where_(pressed));
         strained.into_iter().chain(yielded).chain(pressed).collect()
     }
 

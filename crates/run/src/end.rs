@@ -191,7 +191,7 @@ impl Run<'_> {
             bodies: self.planned.masses.clone(),
             broken_bonds: state.broken_count,
             largest_bond_strain: progress.monitors.bond_strain.largest,
-            largest_overlap: progress.monitors.overlap.largest,
+            largest_overlap: progress.monitors.largest_overlap,
             broken_by_cause: state.broken_by_cause,
             damaged_bonds: state.bonds.count_damaged(),
             yielded_bonds: state.bonds.count_yielded(),

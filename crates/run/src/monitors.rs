@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::rigid_hits::RigidHits;
 use super::taken_in::Taken;
-use dem_engine::check::validity::{LARGEST_OVERLAP, LARGEST_STRAIN};
+use dem_engine::check::validity::{LARGEST_INDENTATION, LARGEST_STRAIN, indentation};
 use dem_engine::stages::bonds::forces::{
     edge_strain, most_strained, most_strained_edge, most_yielded,
 };
@@ -34,8 +34,10 @@ pub(super) struct Monitors {
     pub(super) touched: BTreeSet<String>,
     /// Numbers of walls that something has touched.
     touched_walls: BTreeSet<usize>,
-    /// Ratio of overlap to the smaller radius.
-    pub(super) overlap: Extreme,
+    /// Largest ratio of overlap to the smaller radius.
+    pub(super) largest_overlap: f64,
+    /// Depth to which a contact presses in its smaller sphere, over the radius of this sphere.
+    pub(super) indentation: Extreme,
     /// Strain at the edge of a bond.
     pub(super) bond_strain: Extreme,
     /// Plastic strain at the edge of a bond.
@@ -119,15 +121,22 @@ impl Monitors {
         let mut touching = Vec::new();
         // Particle and wall, or two particles.
         let mut deepest: Option<(f64, u32, Result<usize, u32>)> = None;
-        let mut take = |ratio: f64, a: u32, other: Result<usize, u32>| {
-            if ratio > deepest.map_or(self.overlap.largest, |(largest, ..)| largest) {
-                deepest = Some((ratio, a, other));
+        let mut largest_overlap = self.largest_overlap;
+        let mut take = |overlap_m: f64, a: u32, other: Result<usize, u32>| {
+            let [small_m, large_m] = match other {
+                Ok(_) => [radius(a), f64::INFINITY],
+                Err(b) => [radius(a).min(radius(b)), radius(a).max(radius(b))],
+            };
+            largest_overlap = largest_overlap.max(overlap_m / small_m);
+            let indentation = indentation(overlap_m, small_m, large_m);
+            if indentation > deepest.map_or(self.indentation.largest, |(largest, ..)| largest) {
+                deepest = Some((indentation, a, other));
             }
         };
         for (n, wall) in state.walls.iter().enumerate() {
             for touch in &wall.touching {
                 let overlap_m = touch.history.overlap_m();
-                take(overlap_m / radius(touch.particle), touch.particle, Ok(n));
+                take(overlap_m, touch.particle, Ok(n));
                 if overlap_m > 0.0 {
                     self.touched_walls.insert(n);
                     if misses_one {
@@ -145,15 +154,16 @@ impl Monitors {
                 let overlap_m = contacts.histories[*at as usize].overlap_m();
                 if overlap_m > 0.0 {
                     let [a, b] = contacts.pairs[*at as usize];
-                    take(overlap_m / radius(a).min(radius(b)), a, Err(b));
+                    take(overlap_m, a, Err(b));
                     if misses_one {
                         touching.extend([a, b]);
                     }
                 }
             }
         }
+        self.largest_overlap = largest_overlap;
         if let Some((ratio, a, other)) = deepest {
-            let between = if ratio > LARGEST_OVERLAP {
+            let between = if ratio > LARGEST_INDENTATION {
                 let other = match other {
                     Ok(wall) => format!("the wall '{}'", state.walls[wall].model.name),
                     Err(b) => called(bodies, &state.clumps, b),
@@ -162,7 +172,7 @@ impl Monitors {
             } else {
                 String::new()
             };
-            self.overlap = Extreme {
+            self.indentation = Extreme {
                 largest: ratio,
                 time_s: state.time_s,
                 place_m: p.poses[a as usize].place().into(),

@@ -5,7 +5,7 @@ use dem_io::units::{show_length, significant};
 use nalgebra::Vector3;
 use std::ops::Range;
 
-use crate::check::linearised_contacts::impact::overlap_at_impact;
+use crate::check::linearised_contacts::impact::indentation_at_impact;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
@@ -14,9 +14,16 @@ use crate::state::events::REMOVED;
 /// Strain at the edge of a bond above which linear elasticity is doubtful: its error is of the same
 /// order.
 pub const LARGEST_STRAIN: f64 = 0.1;
-/// Ratio of overlap to the smaller radius above which the contact laws are doubtful: the radius of
-/// Hertz's contact, which should be small, is then 0.55 of the sphere's.
-pub const LARGEST_OVERLAP: f64 = 0.3;
+/// [Indentation](indentation) above which the contact laws are doubtful: the radius of Hertz's
+/// contact, which should be small, is then 0.55 of the sphere's.
+pub const LARGEST_INDENTATION: f64 = 0.3;
+
+/// Depth to which an overlap, m, presses in the smaller of two spheres of these radii, m, over its
+/// radius: the square of the radius of Hertz's contact over that of the sphere. It is the whole
+/// overlap at a wall (an infinite radius), and half of it in each of two equal spheres.
+pub fn indentation(overlap_m: f64, small_radius_m: f64, large_radius_m: f64) -> f64 {
+    overlap_m / small_radius_m / (1.0 + small_radius_m / large_radius_m)
+}
 
 /// Warning that bonds are strained beyond the validity of their law, `where_`. None: they are not.
 pub fn strain_warning(largest: f64, where_: &str) -> Option<String> {
@@ -40,13 +47,14 @@ pub fn plastic_strain_warning(largest: f64, where_: &str) -> Option<String> {
     })
 }
 
-/// Warning that a contact overlaps beyond the validity of its law, `where_`. None: it does not.
-pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
-    (largest > LARGEST_OVERLAP).then(|| {
+/// Warning that a contact presses a sphere in beyond the validity of its law, `where_`. None: none
+/// does.
+pub fn indentation_warning(largest: f64, where_: &str) -> Option<String> {
+    (largest > LARGEST_INDENTATION).then(|| {
         // A value that three digits do not tell from the limit gets more.
-        let digits = if largest < 1.01 * LARGEST_OVERLAP { 6 } else { 3 };
+        let digits = if largest < 1.01 * LARGEST_INDENTATION { 6 } else { 3 };
         format!(
-            "a contact overlapped by {} of the smaller radius{where_}: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials, the loads and the speeds",
+            "a contact pressed a sphere in by {} of its radius{where_}: contact laws hold for small deformations, up to about {LARGEST_INDENTATION}; check the moduli of the materials, the loads and the speeds",
             significant(largest, digits),
         )
     })
@@ -92,13 +100,13 @@ pub fn foreseen(
     }
     warnings.extend(by_loads(state));
     if let Some(speed_m_s) = impact_speed_m_s
-        && let overlap = overlap_at_impact(state, speed_m_s)
-        && overlap > LARGEST_OVERLAP
+        && let pressed = indentation_at_impact(state, speed_m_s)
+        && pressed > LARGEST_INDENTATION
     {
         warnings.push(format!(
-            "an impact at {} m/s presses a single particle in by about {} of its radius: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials and their units",
+            "an impact at {} m/s presses a single particle in by about {} of its radius: contact laws hold for small deformations, up to about {LARGEST_INDENTATION}; check the moduli of the materials and their units",
             significant(speed_m_s, 3),
-            significant(overlap, 2)
+            significant(pressed, 2)
         ));
     }
     warnings

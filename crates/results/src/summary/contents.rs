@@ -6,6 +6,7 @@ use std::path::Path;
 use dem_io::Diagnostic;
 use dem_io::body::mass::BodyMass;
 use dem_io::units::{show_length, significant};
+use dem_laboratory::TestType;
 use dem_laboratory::test_result::TestResult;
 use dem_physics::bond::failure::CauseCounts;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -336,10 +337,12 @@ impl Summary {
         };
     }
 
-    /// A sentence on fragments of which half the mass is near the size of a sphere.
+    /// A sentence on fragments of which half the mass is near the size of a sphere. None as well: the
+    /// run was a test whose results have no fragment sizes.
     fn small_fragments(&self) -> Option<String> {
         let all = self.sizes_if_split()?;
-        all.unresolved.d50.then(|| {
+        let asks = (self.test.as_ref()).is_none_or(|test| test.kind == TestType::DropWeight);
+        (all.unresolved.d50 && asks).then(|| {
             format!(
                 "half the mass is in fragments of {} or less, below {RESOLVED_DIAMETERS} sphere diameters ({}): their sizes reflect the spheres rather than the material; use smaller spheres",
                 show_length(all.d50_m),

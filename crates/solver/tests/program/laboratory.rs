@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::program::{Bench, dem_pack, root, scene_of_data};
+use crate::program::{Bench, dem_pack, dem_run, root, row, scene_of_data, vtp_bytes};
 
 /// A row of 11 spheres of radius 2 mm, gripped at the first and last one and pulled. The bonds are
 /// rods of 4 mm, for which there is a closed form.
@@ -306,4 +306,53 @@ fn what_a_test_cannot_be_made_of() {
         );
         assert!(!bench.path("fast-out").exists());
     }
+}
+
+/// A test measures what its bonds and spheres make: five across are enough, and a note says for
+/// which spheres its bonds hold. Without the test the same body is coarse.
+#[test]
+fn a_specimen_of_five_spheres_across_is_not_coarse() {
+    let bench = Bench::new();
+    let mut body = row(11);
+    body.positions = (0..11).map(|i| [0.0, 0.0, 4e-3 * f64::from(i)]).collect();
+    body.radii = vec![2e-3; 11];
+    body.bonds = (1..11).map(|b| [b - 1, b]).collect();
+    body.bond_radii = vec![2e-3; 10];
+    body.bond_lengths = vec![4e-3; 10];
+    body.about.program = Some("dem-pack 0.1.0".to_owned());
+    body.about.thinnest_part_m = Some(9.8e-3);
+    let mut said_of = |across: f64, has_test: bool| {
+        body.about.particles_across = Some(across);
+        bench.write("row.vtp", vtp_bytes(&body));
+        let whole = bar();
+        let place = |of: &str| whole.find(of).unwrap();
+        let before = &whole[..place("particles = [[")];
+        let mut text = format!(
+            "{before}file = \"row.vtp\"\n{}",
+            &whole[place("material = ")..]
+        );
+        if !has_test {
+            text.truncate(text.find("[test]").unwrap());
+            text = text.replace("[run]\n", "[run]\nend_time = \"1 ms\"\n");
+        }
+        let scene = bench.write("scene.toml", text);
+        let mut check = dem_run();
+        let output = check
+            .arg("check")
+            .arg(scene)
+            .arg("--json")
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        let checked: Value = serde_json::from_slice(&output.stdout).unwrap();
+        ["coarse", "notes"].map(|key| {
+            let all = checked[key].as_array().unwrap().iter();
+            let about = all.filter(|one| one.as_str().unwrap().contains("particles across"));
+            about.count()
+        })
+    };
+    assert_eq!(said_of(4.9, true), [0, 1]);
+    assert_eq!(said_of(4.2, true), [1, 0]);
+    assert_eq!(said_of(4.9, false), [1, 0]);
+    assert_eq!(said_of(10.2, true), [0, 0]);
 }

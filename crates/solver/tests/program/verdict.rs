@@ -286,3 +286,40 @@ fn check_speaks_of_what_inlets_will_feed() {
         assert!(text.contains(said), "{text}");
     }
 }
+
+/// By symmetry each of two equal balls that meet is pressed in as one is that meets a rigid wall at
+/// half the speed: both scenes are doubtful from the same modulus on.
+#[test]
+fn each_of_two_spheres_takes_half_of_their_overlap() {
+    let bench = Bench::new();
+    let common = |modulus_kpa: f64| {
+        format!(
+            "version = 1\nrun.end_time = \"40 ms\"\nrun.safety_factor = 0.1\nmaterials.wall.rigid = true\n\
+             materials.jelly = {{ density = 2000, young_modulus = \"{modulus_kpa} kPa\" }}\n\
+             contacts.jelly-jelly = {{ restitution = 1.0 }}\n\
+             contacts.jelly-wall = {{ restitution = 1.0 }}\n"
+        )
+    };
+    let ball = |name: &str, z_mm: f64, speed_m_s: f64| {
+        format!(
+            "bodies.{name} = {{ particles = [[0, 0, \"{z_mm} mm\", \"10 mm\"]], \
+             material = \"jelly\", velocity = [0, 0, {speed_m_s}] }}\n"
+        )
+    };
+    let floor = "walls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, \
+                 material = \"wall\" }\n";
+    for (modulus_kpa, is_sound) in [(300.0, true), (150.0, false)] {
+        let alone = [&common(modulus_kpa), &ball("one", 10.1, -1.0), floor].concat();
+        let two = [ball("one", 10.1, -1.0), ball("other", -10.1, 1.0)].concat();
+        let pair = [common(modulus_kpa), two].concat();
+        let deepest = [alone, pair].map(|text| {
+            let scene = bench.write("scene.toml", text);
+            let summary = json(&bench, &scene, &["--json", "--quiet"]);
+            let verdict = &summary["verdict"];
+            assert_eq!(verdict["sound"], is_sound, "{modulus_kpa}: {verdict}");
+            summary["largest_overlap"].as_f64().unwrap()
+        });
+        // The pair's overlap counts from both of its spheres.
+        assert!((deepest[1] / deepest[0] - 2.0).abs() < 1e-3, "{deepest:?}");
+    }
+}

@@ -1,6 +1,7 @@
 //! Contacts linearised at an impact of a speed.
 
 use super::{LEAST_OVERLAP, translation};
+use crate::check::validity::indentation;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
 use crate::state::clumps::Clump;
@@ -83,10 +84,10 @@ fn at_impacts(state: &State, speed_m_s: f64, first: impl Iterator<Item = Hit>) -
     largest
 }
 
-/// Largest ratio of overlap to radius in an impact at a speed, m/s, of a single sphere with a wall
-/// or another of its size: a particle pushed by a body behind it overlaps more. One sphere of each
+/// Largest [indentation] in an impact at a speed, m/s, of a single sphere with a wall or another of
+/// its size: a particle pushed by a body behind it is pressed in further. One sphere of each
 /// material represents all, as the ratio does not depend on the radius with Hertz's law.
-pub(crate) fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
+pub(crate) fn indentation_at_impact(state: &State, speed_m_s: f64) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };
@@ -110,7 +111,8 @@ pub(crate) fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
         let all = (pairs.map(|kind| (kind, false))).chain(walls.map(|kind| (kind, true)));
         for (kind, at_wall) in all {
             let overlap_m = overlap_at_impact_m(kind, radius_m, inverse_kg, speed_m_s, at_wall);
-            largest = largest.max(overlap_m / radius_m);
+            let other_m = if at_wall { f64::INFINITY } else { radius_m };
+            largest = largest.max(indentation(overlap_m, radius_m, other_m));
         }
     }
     largest
