@@ -50,9 +50,11 @@ pub fn report(record: &Record, most_error: Option<f64>) -> String {
             cost.push_str(&elastic);
         }
         line(&mut text, "cost", &cost);
-        for warning in warnings(record, case) {
-            line(&mut text, "warning", &warning);
+        let warnings = warnings(record, case);
+        for warning in &warnings {
+            line(&mut text, "warning", warning);
         }
+        line(&mut text, "verdict", &verdict(warnings.len()));
     }
     if let Some(sentence) = coarsest_size(record, most_error) {
         line(&mut text, "resolution", &sentence);
@@ -133,6 +135,15 @@ pub(crate) fn number_rows<'a>(
             numbers.iter().map(of)
         })
         .collect()
+}
+
+/// Whether a result can be trusted about which there are so many warnings.
+pub(crate) fn verdict(warnings: usize) -> String {
+    match warnings {
+        0 => "sound".to_owned(),
+        1 => "doubtful: 1 warning".to_owned(),
+        many => format!("doubtful: {many} warnings"),
+    }
 }
 
 /// Reasons to doubt the result of a case, a sentence each.

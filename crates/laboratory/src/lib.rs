@@ -46,7 +46,7 @@ pub use list::{ListedSpecimen, read_list};
 pub use material::{FORMAT_VERSION, MeasuredMaterial, material};
 pub use mean_curve::CurvePoint;
 pub use page::{Series, page, page_of_series, regions_plot, statistics};
-pub use regions::Regions;
+pub use regions::{FALL, Regions};
 pub use residual::{has_passed_its_peak, residual_n};
 pub use specimen::{Dimensions, Specimen, TestType};
 pub use statistic::Statistic;

@@ -32,7 +32,7 @@ const LEAST_RISE: f64 = 0.2;
 /// Part of the linear region that is left out of the fit at each of its ends.
 const TRIMMED: f64 = 0.1;
 /// Falls of the force, as fractions of the largest, that tell two peaks from one.
-const FALL: f64 = 0.2;
+pub const FALL: f64 = 0.2;
 const SECOND_PEAK: f64 = 0.3;
 
 /// Regions of a curve, as rows, and what follows from them.

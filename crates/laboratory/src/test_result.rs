@@ -2,6 +2,10 @@
 
 mod text;
 
+use dem_io::units::{
+    Dimension, ENERGY, ENERGY_PER_MASS, FORCE, LENGTH, RATE, STIFFNESS as STIFFNESS_OF, STRESS,
+    TIME,
+};
 use dem_physics::bond::failure::Cause;
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +29,32 @@ pub const UNBOOKED: &str = "energy unaccounted for";
 pub const T10: &str = "t10";
 /// Share of the mass of the spheres that are smaller than that: t10 cannot be larger.
 pub const LARGEST_T10: &str = "largest possible t10";
+
+/// The dimension of a figure of a test by its name. None: it is a plain number.
+pub fn dimension_of(figure: &str) -> Option<&'static Dimension> {
+    let ends: [(&str, &Dimension); 8] = [
+        ("strength", &STRESS),
+        ("stiffness", &STIFFNESS_OF),
+        ("force", &FORCE),
+        ("travel at failure", &LENGTH),
+        ("strain rate", &RATE),
+        ("duration", &TIME),
+        ("specific absorbed energy", &ENERGY_PER_MASS),
+        ("absorbed energy", &ENERGY),
+    ];
+    let begins = [
+        "modulus",
+        "specimen modulus",
+        "stress",
+        "axial stress",
+        "largest stress",
+    ];
+    if begins.iter().any(|word| figure.starts_with(word)) {
+        return Some(&STRESS);
+    }
+    let found = ends.iter().find(|(word, _)| figure.ends_with(word));
+    found.map(|(_, dimension)| *dimension)
+}
 
 /// The first bond that broke.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -92,7 +122,7 @@ pub struct TestResult {
     /// Displacement, m, from where the fitted line has no load, and load, N.
     #[serde(skip)]
     pub curve: Vec<[f64; 2]>,
-    /// Reasons to doubt a dynamic test that its figures do not show.
+    /// Reasons to doubt the test that its figures do not show.
     #[serde(skip)]
     pub reasons: Vec<String>,
     /// Relative changes of the figures at half the rate: (slow - fast)/fast. Empty: not checked.

@@ -1,6 +1,6 @@
 //! The curve of a test: its means, its elastic part and its peak.
 
-use dem_laboratory::{ELASTIC, elastic_line, elastic_rows, largest_force};
+use dem_laboratory::{ELASTIC, FALL, elastic_line, elastic_rows, largest_force};
 
 use super::record::{Record, Row};
 
@@ -62,12 +62,52 @@ pub fn peak(rows: &[Row]) -> Option<&Row> {
     rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
 }
 
+/// The peak that comes before the largest load and the lowest load between them, N, if the load
+/// falls by as much between them as tells two peaks of a measured curve. None: it does not.
+pub(crate) fn earlier_peak(rows: &[Row]) -> Option<[f64; 2]> {
+    let largest_n = peak(rows)?.load_n();
+    let [mut before_n, mut high_n] = [f64::NEG_INFINITY; 2];
+    let mut low_n = f64::INFINITY;
+    for row in rows {
+        let load_n = row.load_n();
+        if load_n >= largest_n {
+            break;
+        }
+        if load_n > high_n {
+            high_n = load_n;
+        } else if high_n - load_n > (before_n - low_n).max(FALL * largest_n) {
+            [before_n, low_n] = [high_n, load_n];
+        }
+    }
+    (low_n < before_n).then_some([before_n, low_n])
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::panic)]
     use dem_laboratory::{Curve, Regions};
 
     use super::*;
+
+    #[test]
+    fn a_peak_before_the_largest_load_is_found_by_its_fall() {
+        let rows = |loads_n: &[f64]| -> Vec<Row> {
+            let row = |force_n: &f64| Row {
+                force_n: *force_n,
+                reaction_n: *force_n,
+                ..Row::default()
+            };
+            loads_n.iter().map(row).collect()
+        };
+        let found = |loads_n: &[f64]| earlier_peak(&rows(loads_n));
+        assert_eq!(found(&[0.0, 80.0, 48.0, 84.0, 10.0]), Some([80.0, 48.0]));
+        assert_eq!(found(&[0.0, 80.0, 70.0, 84.0, 10.0]), None);
+        assert_eq!(found(&[0.0, 84.0, 48.0, 80.0, 10.0]), None);
+        // The deepest fall counts, and a fall in several steps.
+        let loads_n = [0.0, 40.0, 20.0, 60.0, 50.0, 30.0, 84.0];
+        assert_eq!(found(&loads_n), Some([60.0, 30.0]));
+        assert_eq!(found(&[0.0, 10.0, 20.0]), None);
+    }
 
     /// A curve of a test and the same curve of a rig have the same stiffness, play and strength, to
     /// the last digit: smooth and noisy ones, straight and curved. Before contact nothing loads the

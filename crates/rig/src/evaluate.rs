@@ -1,10 +1,11 @@
 //! Results of a test from force and displacement: stiffness, modulus, strength, position of the
 //! crack.
 
+use dem_io::units::show_quantity;
 use dem_scene::{BondKind, Test};
 
 use super::confined::{self, POISSON_RATIO, RESIDUAL, RESIDUAL_FRICTION};
-use super::curve::{largest_n, peak, play_m, rows_of, slope};
+use super::curve::{earlier_peak, largest_n, peak, play_m, rows_of, slope};
 use super::disc_stress::{self, ACROSS, ALONG};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
@@ -91,10 +92,22 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         figures: measured.figures,
         first_broken,
         curve,
+        reasons: second_peak(evidence, rows).into_iter().collect(),
         ..without_figures(evidence, rows)
     };
     result.calibration = calibration(&result, evidence);
     result
+}
+
+/// A sentence on a strength that is that of a second peak, as of debris between the plates.
+fn second_peak(evidence: &TestInput<'_>, rows: &[Row]) -> Option<String> {
+    let counts = evidence.broken && !evidence.test.kind.has_residual();
+    let [before_n, low_n] = earlier_peak(rows).filter(|_| counts)?;
+    let largest_n = peak(rows)?.load_n();
+    let [before, low, largest] = [before_n, low_n, largest_n].map(|load| show_quantity(load, "N"));
+    Some(format!(
+        "the load has two peaks: it falls from {before} to {low} and rises to {largest}, which is taken as its strength, though the body may have failed at the first: see force-displacement.csv; take smaller spheres, or other packings"
+    ))
 }
 
 /// What all tests have in common.

@@ -21,6 +21,10 @@ use dem_engine::state::rules::Outlet;
 
 /// Fraction of the run at its end in which a breaking bond shows that breakage is not over.
 const LATE: f64 = 0.05;
+/// Share of all broken bonds that broke in that part of a run that inlets feed above which it ends
+/// in the middle of an impact, and number of broken bonds below which nothing is said of it.
+const BURST: f64 = 0.2;
+const FEW_BREAKS: u32 = 100;
 /// Number of bodies that a warning names; the others are counted.
 const NAMED: usize = 3;
 
@@ -176,10 +180,28 @@ impl Monitors {
         !self.came.contains(name) && inlets.any(|inlet| inlet.templates.iter().any(is_own))
     }
 
+    /// Warning that much of the breakage of a scene that inlets feed happened shortly before its
+    /// end: it ends in the middle of an impact.
+    fn ends_in_a_burst(&self, late_from_s: f64) -> Option<String> {
+        let [all, late] = self.breaks.all_and_since(late_from_s);
+        let share = f64::from(late) / f64::from(all);
+        (all >= FEW_BREAKS && share > BURST).then(|| {
+            format!(
+                "{:.0} % of the broken bonds broke shortly before the end, from {} s on: the run ends in the middle of an impact; set run.end_time later, or end the inlet before it (inlets.NAME.count)",
+                100.0 * share,
+                significant(late_from_s, 3)
+            )
+        })
+    }
+
     /// Warning that bonds broke until the end.
     fn still_breaking(&self, state: &State, scene: &Scene) -> Option<String> {
-        let last_s = self.last_break_s.filter(|_| !is_fed(state))?;
-        (last_s >= (1.0 - LATE) * state.time_s).then(|| {
+        let last_s = self.last_break_s?;
+        let late_from_s = (1.0 - LATE) * state.time_s;
+        if is_fed(state) {
+            return self.ends_in_a_burst(late_from_s);
+        }
+        (last_s >= late_from_s).then(|| {
             format!(
                 "bonds still broke at the end, the last at {} s of {} s: the breakage may not be over; set run.end_time later than {} s",
                 significant(last_s, 4),

@@ -1,6 +1,7 @@
 //! A run: steps a plan to its end, monitors it, measures and writes results.
 
 mod begin;
+mod breaks;
 mod changes;
 mod doubts;
 mod end;

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
+use super::breaks::Breaks;
 use super::rigid_hits::RigidHits;
 use super::taken_in::Taken;
 use dem_engine::check::validity::{LARGEST_INDENTATION, LARGEST_STRAIN, indentation};
@@ -52,6 +53,8 @@ pub(super) struct Monitors {
     pub(super) came: BTreeSet<String>,
     /// Time of the last bond breakage, s.
     pub(super) last_break_s: Option<f64>,
+    /// Broken bonds over time.
+    pub(super) breaks: Breaks,
     /// Largest kinetic energy at a row of the time series, J.
     pub(super) largest_kinetic_j: f64,
 }
@@ -60,8 +63,12 @@ impl Monitors {
     /// Records the bonds that have broken in this step, and the strains of those that broke at
     /// their strength.
     pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
-        for broken in &state.scratch.events.broken {
+        let broken = state.scratch.events.broken.len();
+        if broken > 0 {
             self.last_break_s = Some(state.time_s);
+            self.breaks.note(state.time_s, broken);
+        }
+        for broken in &state.scratch.events.broken {
             let at = broken.bond as usize;
             if state.bonds.was_damaged(at) {
                 continue;

@@ -5,7 +5,7 @@ use dem_laboratory::{FailureLine, TestType};
 
 use super::state::{Aim, Joint};
 use crate::case::End;
-use crate::text::{change_text, line, number_rows, prediction, rate_doubt, result_row};
+use crate::text::{change_text, line, number_rows, prediction, rate_doubt, result_row, verdict};
 
 /// The result for a terminal: some lines for each test, the numbers, cost and warnings.
 pub fn joint_report(joint: &Joint) -> String {
@@ -46,9 +46,11 @@ pub fn joint_report(joint: &Joint) -> String {
         ));
     }
     line(&mut text, "cost", &cost);
-    for warning in warnings(joint) {
-        line(&mut text, "warning", &warning);
+    let warnings = warnings(joint);
+    for warning in &warnings {
+        line(&mut text, "warning", warning);
     }
+    line(&mut text, "verdict", &verdict(warnings.len()));
     text
 }
 

@@ -27,7 +27,7 @@ impl TestResult {
         if self.is_dynamic() {
             return self.dynamic_doubts();
         }
-        let mut doubts = Vec::new();
+        let mut doubts = self.reasons.clone();
         if self.target_strength_pa.is_some() && !self.broken {
             let although = match self.broken_share() {
                 0.0 => "; no bond broke".to_owned(),

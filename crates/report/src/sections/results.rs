@@ -92,8 +92,10 @@ pub(crate) fn add_results(page: &mut Page, summary: &Summary, folder: &Folder) {
         add_sizes(page, sizes);
     }
     if let Some(discharge) = folder.text("discharge.csv") {
-        let fines_kg = summary.population.as_ref().map_or(0.0, |p| p.fines_kg);
-        add_outlets(page, &discharge, summary.simulated_s, fines_kg);
+        let population = summary.population.as_ref();
+        let fines_kg = population.map_or(0.0, |p| p.fines_kg);
+        let flow_kg_s = |name: &str| population?.outlets.get(name)?.flow_kg_s;
+        add_outlets(page, &discharge, flow_kg_s, fines_kg);
     }
     let distribution = folder.text("distribution.csv");
     if let Some(table) = distribution.as_deref().and_then(passing) {

@@ -61,6 +61,9 @@ pub struct OutletSummary {
     pub bodies: u32,
     /// Their mass, kg.
     pub mass_kg: f64,
+    /// Mass flow between the first and the last tenth of this mass, kg/s. None: too few pieces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow_kg_s: Option<f64>,
 }
 
 /// Bodies added, removed and replaced.

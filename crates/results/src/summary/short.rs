@@ -79,6 +79,14 @@ impl Summary {
             "bodies       {} fed ({fed} kg){discharged}{fines}",
             bodies.fed
         )?;
+        let flows = bodies.outlets.iter().filter_map(|(name, outlet)| {
+            let flow_kg_s = significant(outlet.flow_kg_s?, 3);
+            Some(format!("{} {flow_kg_s} kg/s", visible(name)))
+        });
+        let flows: Vec<String> = flows.take(SHOWN).collect();
+        if !flows.is_empty() {
+            writeln!(out, "flow         {}", flows.join(", "))?;
+        }
         if bodies.outlets.len() < 2 {
             return Ok(());
         }

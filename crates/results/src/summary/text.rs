@@ -5,6 +5,7 @@ use std::fmt::{self, Write};
 use dem_io::body::mass::mass_lines;
 use dem_io::text::visible;
 use dem_io::units::significant;
+use dem_laboratory::test_result::TestResult;
 
 use super::contents::Summary;
 use super::equilibrium::EquilibriumSummary;
@@ -23,7 +24,7 @@ impl fmt::Display for Summary {
         self.write_head(f)?;
         measure_lines(&self.measures, f)?;
         if let Some(test) = &self.test {
-            write!(f, "{test}")?;
+            f.write_str(&self.marked(test))?;
         }
         self.write_steps(f)?;
         self.write_broken(f)?;
@@ -106,6 +107,20 @@ impl Summary {
             "broken       {}{of_all} bonds{causes}{damaged}{yielded}",
             self.broken_bonds
         )
+    }
+
+    /// The text of a test, with a `*` behind a size of fragments that the spheres do not resolve.
+    fn marked(&self, test: &TestResult) -> String {
+        let is_unresolved = |line: &str| {
+            let name = line.split_whitespace().next();
+            name.is_some_and(|name| self.verdict.unresolved.iter().any(|other| other == name))
+        };
+        let text = test.to_string();
+        let lines = text.lines().map(|line| match is_unresolved(line) {
+            true => format!("{line}*\n"),
+            false => format!("{line}\n"),
+        });
+        lines.collect()
     }
 
     /// Largest deformations.
@@ -228,10 +243,13 @@ impl Summary {
                 },
             )?;
         }
-        if p.outlets.len() > 1 {
+        if p.outlets.len() > 1 || p.outlets.values().any(|outlet| outlet.flow_kg_s.is_some()) {
             let outlets = p.outlets.iter().map(|(name, outlet)| {
+                let flow = outlet.flow_kg_s.map_or(String::new(), |flow_kg_s| {
+                    format!(", {} kg/s", significant(flow_kg_s, 3))
+                });
                 format!(
-                    "{name} {} ({} kg)",
+                    "{name} {} ({} kg{flow})",
                     outlet.bodies,
                     significant(outlet.mass_kg, 4)
                 )
@@ -281,7 +299,7 @@ impl Summary {
         self.write_equilibrium_head(f)?;
         measure_lines(&self.measures, f)?;
         if let Some(test) = &self.test {
-            write!(f, "{test}")?;
+            f.write_str(&self.marked(test))?;
         }
         let steps = |count: usize, what: &str| {
             format!("{count} {what}{}", if count == 1 { "" } else { "s" })

@@ -7,12 +7,18 @@ use dem_scene::Scene;
 use dem_engine::stages::ledger::bookkeeping::over;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clusters::sizes::Discharged;
 use dem_engine::state::sleep::Sleep;
 use dem_engine::state::walls::Wall;
 use dem_plan::stroke_m;
 use dem_results::summary::{
     OutletSummary, PartError, PopulationSummary, SleepSummary, WallSummary,
 };
+
+/// Share of the mass of an outlet at either end that its flow leaves out.
+const TENTH: f64 = 0.1;
+/// Number of pieces below which an outlet has no flow.
+const ENOUGH_FOR_A_FLOW: usize = 20;
 
 /// The largest energy error of bodies apart from all others, if it is more than this relative error
 /// of the whole.
@@ -63,9 +69,14 @@ pub(crate) fn population_summary(
         discharged: population.outlets.iter().map(|left| left.bodies).sum(),
         discharged_kg: (population.outlets.iter()).fold(0.0, |sum, left| sum + left.mass_kg),
         outlets: (rules.outlets.iter().zip(&population.outlets))
-            .map(|(outlet, left)| {
-                let (bodies, mass_kg) = (left.bodies, left.mass_kg);
-                (outlet.name.clone(), OutletSummary { bodies, mass_kg })
+            .enumerate()
+            .map(|(number, (outlet, left))| {
+                let summary = OutletSummary {
+                    bodies: left.bodies,
+                    mass_kg: left.mass_kg,
+                    flow_kg_s: flow_kg_s(&population.discharged, number),
+                };
+                (outlet.name.clone(), summary)
             })
             .collect(),
         rigid_parts: state.rigid_parts.all.len(),
@@ -74,6 +85,24 @@ pub(crate) fn population_summary(
         bond_updates_skipped: over(left_out, done + left_out),
         inner_sphere_fraction: over(inner, clumps.templates.len() as f64),
     })
+}
+
+/// Mass flow through an outlet between the first and the last tenth of the mass that it took, kg/s.
+/// None: it took too few pieces, or all at once.
+fn flow_kg_s(discharged: &[Discharged], outlet: usize) -> Option<f64> {
+    let own = discharged
+        .iter()
+        .filter(|one| one.outlet as usize == outlet);
+    let left: Vec<[f64; 2]> = own.map(|one| [one.time_s, one.size.mass_kg]).collect();
+    let all_kg: f64 = left.iter().map(|[_, mass_kg]| mass_kg).sum();
+    let mut sum_kg = 0.0;
+    let mut sums = left.iter().map(|[time_s, mass_kg]| {
+        sum_kg += mass_kg;
+        [*time_s, sum_kg]
+    });
+    let [from_s, from_kg] = sums.find(|[_, sum_kg]| *sum_kg >= TENTH * all_kg)?;
+    let [to_s, to_kg] = sums.find(|[_, sum_kg]| *sum_kg >= (1.0 - TENTH) * all_kg)?;
+    (left.len() >= ENOUGH_FOR_A_FLOW && to_s > from_s).then(|| (to_kg - from_kg) / (to_s - from_s))
 }
 
 /// Bodies of one sphere that are particles and come from inlets or clumps.

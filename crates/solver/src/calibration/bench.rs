@@ -10,7 +10,6 @@ use dem_scene::{Scene, Test, scene_from_text, set_text};
 
 use super::choice::SceneText;
 use dem_laboratory::Specimen;
-use dem_laboratory::test_result::TestResult;
 use dem_plan::Plan;
 use dem_results::Summary;
 use dem_rig::arrange::{arrange, tested_body};
@@ -149,7 +148,7 @@ impl Bench<'_> {
             results: self.unknowns.iter().map(result).collect(),
             at_least: vec![None; self.unknowns.len()],
             curve: test.map_or_else(Vec::new, |test| test.curve.clone()),
-            doubts: test.map_or_else(Vec::new, |test| doubts(scene, test)),
+            doubts: doubts(scene, summary),
             broken_at_peak: test.map_or(0, |test| test.broken_at_peak),
             wall_s: 0.0,
         }
@@ -177,9 +176,12 @@ pub(crate) fn overrides(
     overrides
 }
 
-/// Reasons to doubt a test, with the remedy for a crack outside its region.
-fn doubts(scene: &Scene, test: &TestResult) -> Vec<String> {
-    let mut doubts = test.doubts();
+/// Reasons to doubt a run, with the remedy for a crack outside the region of its test.
+fn doubts(scene: &Scene, summary: &Summary) -> Vec<String> {
+    let mut doubts = summary.verdict.warnings.clone();
+    let Some(test) = &summary.test else {
+        return doubts;
+    };
     let is_outside = test.crack.as_ref().is_some_and(|crack| !crack.is_within);
     let presses = scene.test.as_ref().is_some_and(|test| {
         let is_wall = |name: &String| scene.walls.contains_key(name);

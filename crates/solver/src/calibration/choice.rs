@@ -1,13 +1,13 @@
 //! Which numbers are varied, and which result each is to give.
 
 use dem_calibration::{Number, Unknown};
-use dem_io::units::quantity;
+use dem_io::units::{Dimension, quantity};
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
 use dem_scene::study::RUN_RESULTS;
 use dem_scene::{Scene, Test, written_value};
 
-use dem_laboratory::test_result::STIFFNESS;
+use dem_laboratory::test_result::{STIFFNESS, dimension_of};
 use dem_rig::dynamic::DYNAMIC_RESULTS;
 use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STRENGTH};
 
@@ -152,7 +152,10 @@ impl Chooser<'_> {
                     Diagnostic::input(place(), format!("the scene has no {path}"), remedy)
                 })?],
                 result: result.to_owned(),
-                unit: String::new(),
+                unit: self
+                    .dimension(result)
+                    .map_or("", |dimension| dimension.si)
+                    .to_owned(),
                 target,
                 tolerance: STRENGTH_TOLERANCE,
                 is_proportional: false,
@@ -180,10 +183,9 @@ impl Chooser<'_> {
     /// it is no number. An angle of repose is given in degrees, and needs its unit.
     fn target(&self, result: &str, value: &str) -> Result<Option<f64>> {
         let plain: Option<f64> = value.parse().ok();
-        let Some(measure) = self.scene.measures.get(result) else {
+        let Some(dimension) = self.dimension(result) else {
             return Ok(plain);
         };
-        let dimension = measure.quantity.dimension;
         match plain {
             Some(number) if dimension.si == "deg" => {
                 let problem = format!("the unit of {result}:{value} is missing");
@@ -196,6 +198,15 @@ impl Chooser<'_> {
                 quantity(value, dimension).map(Some)
             }
             _ => Ok(plain),
+        }
+    }
+
+    /// The dimension of a measure, or of a figure of the test. None: a plain number.
+    fn dimension(&self, result: &str) -> Option<&'static Dimension> {
+        let measure = self.scene.measures.get(result);
+        match measure {
+            Some(measure) => Some(measure.quantity.dimension),
+            None => dimension_of(result).filter(|_| self.scene.test.is_some()),
         }
     }
 

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use dem_calibration::{Aim, Free, Number};
-use dem_io::units::{STRESS, quantity};
+use dem_io::units::quantity;
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
-use dem_laboratory::test_result::STIFFNESS;
+use dem_laboratory::test_result::{STIFFNESS, dimension_of};
 use dem_rig::confined::RESIDUAL;
 use dem_rig::dynamic::DYNAMIC_RESULTS;
 use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS};
@@ -359,17 +359,17 @@ fn named_aim(tests: &[TestScene], text: &str) -> Result<Aim> {
     }
     let measured = test.measured.as_ref().map(|measured| &measured.material);
     let residual_pa = measured.and_then(|material| material.residual_pa);
-    let is_stress = ["strength", "stress", "modulus"]
-        .iter()
-        .any(|word| result.ends_with(word));
+    let dimension = dimension_of(result);
     let target = match value {
         None => residual_pa
             .filter(|_| result == RESIDUAL)
             .map(|one| one.mean),
-        Some(value) => match value.parse() {
-            Ok(number) => Some(number),
-            Err(_) if is_stress => Some(quantity(value, &STRESS).map_err(|e| e.within(&place))?),
-            Err(_) => None,
+        Some(value) => match (value.parse(), dimension) {
+            (Ok(number), _) => Some(number),
+            (Err(_), Some(dimension)) => {
+                Some(quantity(value, dimension).map_err(|e| e.within(&place))?)
+            }
+            (Err(_), None) => None,
         },
     };
     let target = target.filter(|target: &f64| *target > 0.0 && target.is_finite());
@@ -381,7 +381,7 @@ fn named_aim(tests: &[TestScene], text: &str) -> Result<Aim> {
     Ok(Aim {
         test: at,
         result: result.to_owned(),
-        unit: if is_stress { "Pa" } else { "" }.to_owned(),
+        unit: dimension.map_or("", |dimension| dimension.si).to_owned(),
         target,
         tolerance: STRENGTH_TOLERANCE,
         slopes: Vec::new(),
