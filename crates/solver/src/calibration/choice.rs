@@ -146,13 +146,16 @@ impl Chooser<'_> {
                 let remedy = format!("use one of {}", known.join(", "));
                 return Err(Diagnostic::input(place(), problem, remedy));
             }
+            let measure = self.scene.measures.get(result);
             return Ok(Unknown {
                 numbers: vec![self.number(path)?.ok_or_else(|| {
                     let remedy = "write its path as for --set, such as contacts.cake-cake.friction";
                     Diagnostic::input(place(), format!("the scene has no {path}"), remedy)
                 })?],
                 result: result.to_owned(),
-                unit: String::new(),
+                unit: measure
+                    .map_or("", |one| one.quantity.dimension.si)
+                    .to_owned(),
                 target,
                 tolerance: STRENGTH_TOLERANCE,
                 is_proportional: false,
