@@ -41,8 +41,8 @@ pub fn instructions() -> &'static str {
     "neither AVX-512 nor AVX2"
 }
 
-/// Whether this processor has all of AVX2 if it has FMA, and all of AVX-512 that is used if it has a
-/// part of it: a library that asks for that part alone fails on others, such as AMD Piledriver.
+/// Whether this processor has all of AVX2 if it has FMA, and all of AVX-512 if it has AVX-512F: a
+/// library that asks for the part alone fails on others, such as AMD Piledriver.
 pub fn has_whole_sets() -> bool {
     #[cfg(target_arch = "x86_64")]
     {
