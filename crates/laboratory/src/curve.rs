@@ -479,7 +479,11 @@ impl Wanted<'_> {
         {
             return Ok(number - 1);
         }
-        let is_it = |column: &Column| column.name.trim().eq_ignore_ascii_case(wanted.trim());
+        let is_it = |column: &Column| {
+            let same = |name: &str| name.trim().eq_ignore_ascii_case(wanted.trim());
+            // As the tables of a run write it, too: `travel_m`.
+            same(&column.name) || same(&format!("{}_{}", column.name, column.unit))
+        };
         table.columns.iter().position(is_it).ok_or_else(|| {
             let all: Vec<usize> = (0..count).collect();
             let problem = format!(

@@ -219,6 +219,22 @@ fn a_crosshead_that_drives_back_is_cut_off() {
     }
 }
 
+/// A column of a table of a run is named as its head has it, with the unit, or without.
+#[test]
+fn a_column_may_be_named_with_its_unit() {
+    let text = file("time_s,travel_m,displacement_m,load_n\n", |x, f| {
+        format!("{x:.5},{:.8},7,{f:.5}", 1e-3 * x)
+    });
+    let table = Table::of(&text).unwrap();
+    let named = |column: &str| ColumnChoice {
+        column: Some(column.to_owned()),
+        ..ColumnChoice::default()
+    };
+    let of = |travel: &str| Curve::of(&table, &named(travel), &ColumnChoice::default());
+    assert_eq!(of("travel_m").unwrap(), of("travel").unwrap());
+    assert!(of("travel_mm").is_err());
+}
+
 #[test]
 fn columns_and_units_can_be_named() {
     let text = file("", |x, f| format!("{x:.1};{f:.5};{x:.5}"));

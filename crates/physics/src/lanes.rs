@@ -41,6 +41,25 @@ pub fn instructions() -> &'static str {
     "neither AVX-512 nor AVX2"
 }
 
+/// Whether this processor has all of AVX2 if it has FMA, and all of AVX-512 if it has AVX-512F: a
+/// library that asks for the part alone fails on others, such as AMD Piledriver.
+pub fn has_whole_sets() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let has_parts = [
+            std::arch::is_x86_feature_detected!("fma"),
+            std::arch::is_x86_feature_detected!("avx512f"),
+        ];
+        let has_all = [
+            pulp::x86::V3::try_new().is_some(),
+            pulp::x86::V4::try_new().is_some(),
+        ];
+        std::iter::zip(has_parts, has_all).all(|(part, all)| all || !part)
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    true
+}
+
 /// Does the work with up to four lanes. The results are the same, bit for bit, for any number.
 pub fn with_lanes(work: impl LaneWork) {
     #[cfg(target_arch = "x86_64")]

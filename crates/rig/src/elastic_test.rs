@@ -114,6 +114,11 @@ fn refused(problem: NotPressed, place: &str) -> Diagnostic {
         NotPressed::NoEquilibrium(Cause::Memory) => {
             Diagnostic::failed(place, "the stiffness does not fit into memory", remedy)
         }
+        NotPressed::NoEquilibrium(Cause::Processor) => Diagnostic::failed(
+            place,
+            "the library of linear systems does not work on this processor",
+            remedy,
+        ),
         NotPressed::NoEquilibrium(Cause::Pivot | Cause::NoConvergence) => {
             Diagnostic::unstable(place, "no equilibrium was found without steps", remedy)
         }

@@ -23,6 +23,7 @@ use crate::last_files::flows::body_flows;
 use crate::last_files::fragments::fragment_summary;
 use crate::last_files::wall_loads::wall_load_summary;
 use crate::machine::{machine, processor_time_s};
+use dem_engine::check::watchdog::relaxation_remedy;
 use dem_engine::state::clusters::fragments as fragments_of;
 use dem_engine::state::clusters::fragments::Fragment;
 use dem_engine::step::{advance, number_of, stages};
@@ -90,7 +91,8 @@ impl Run<'_> {
         }
         let outputs = self.outputs.iter();
         (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));
-        summary.judge(warnings, std::mem::take(&mut self.planned.coarse));
+        let coarse = std::mem::take(&mut self.planned.coarse);
+        summary.judge(warnings, coarse, relaxation_remedy(&self.state));
         match folder {
             None => {}
             // Of what has been simulated; its film goes on with the run.

@@ -109,7 +109,7 @@ pub fn run(
     let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), (notes, inputs));
     summary.test = test;
     warnings.extend(strain_warning(summary.largest_bond_strain, ""));
-    summary.judge(warnings, coarse);
+    summary.judge(warnings, coarse, None);
     if let (Some(folder), Some(order)) = (settings.folder, order) {
         at_rest.write(folder, &order, &values, &summary)?;
     }
@@ -171,6 +171,11 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
             place,
             "the factors of the stiffness do not fit into memory",
             "use fewer particles, or run.integrator = \"leapfrog\"",
+        ),
+        Cause::Processor => Diagnostic::failed(
+            place,
+            "the library of linear systems does not work on this processor, which has FMA without all of AVX2, or AVX-512F without all of AVX-512",
+            "run it on another, or with run.integrator = \"leapfrog\"",
         ),
         Cause::Interrupted => Diagnostic::interrupted(
             format!("interrupted: {reached}"),

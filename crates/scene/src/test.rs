@@ -2,9 +2,12 @@
 
 mod confined;
 mod dynamic;
+mod targets;
 
 pub use confined::{Confinement, NormalStress};
 pub use dynamic::{Bars, Gauges, Weight};
+pub(super) use targets::conflicts;
+use targets::targets;
 
 use std::collections::BTreeMap;
 use std::ops::Bound::{Included, Unbounded};
@@ -18,7 +21,6 @@ use super::run::{Integrator, Run};
 use super::schema::{Key, Kind, table_schema, words_of};
 use super::support::Support;
 use super::table::Table;
-use super::tree::Origin;
 use super::wall::{Wall, WallMotion};
 use dem_io::diagnostic::Result;
 use dem_io::units::{AREA, LENGTH, STRESS, VELOCITY, show_quantity};
@@ -322,78 +324,6 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
         }
     }
 }
-
-/// A target: the value that the scene gives, and the one that was measured, Pa.
-struct Target {
-    key: &'static str,
-    given_pa: Option<f64>,
-    measured_pa: Option<f64>,
-    /// The measured one counts: its file is given on the command line, the other is not.
-    measured_counts: bool,
-}
-
-impl Target {
-    fn taken_pa(&self) -> Option<f64> {
-        if self.measured_counts {
-            self.measured_pa.or(self.given_pa)
-        } else {
-            self.given_pa.or(self.measured_pa)
-        }
-    }
-}
-
-/// Modulus and strength with which the test is compared.
-fn targets(table: &Table<'_>, measured: Option<&MeasuredReference>) -> Result<[Target; 2]> {
-    let material = measured.map(|measured| &measured.material);
-    let modulus = material.and_then(|material| material.young_modulus_pa);
-    let strength = material.map(|material| material.strength_pa);
-    let is_option = |field: &Field<'_>| matches!(field.node.origin, Origin::Option(_));
-    let measured_is_option = table.get("measured").is_some_and(|field| is_option(&field));
-    let target = |key, measured: Option<f64>| {
-        let given = table.get(key);
-        Ok(Target {
-            key,
-            given_pa: table.read(key)?,
-            measured_pa: measured,
-            measured_counts: measured_is_option && !given.is_some_and(|field| is_option(&field)),
-        })
-    };
-    Ok([
-        target("young_modulus", modulus.map(|modulus| modulus.mean))?,
-        target("strength", strength.map(|strength| strength.mean))?,
-    ])
-}
-
-/// What a test says twice: modulus or strength of its own beside those of its measured material.
-pub(super) fn conflicts(field: &Field<'_>, test: Option<&Test>) -> Result<Vec<String>> {
-    let table = Table::of(field, &TEST)?;
-    let Some(measured) = test.and_then(|test| test.measured.as_ref()) else {
-        return Ok(Vec::new());
-    };
-    let file = measured.file.display();
-    let told = |target: Target| {
-        let (given_pa, measured_pa) = (target.given_pa?, target.measured_pa?);
-        if (given_pa - measured_pa).abs() <= SAME * measured_pa.abs() {
-            return None;
-        }
-        let [given, found] = [given_pa, measured_pa].map(|value| show_quantity(value, "Pa"));
-        let key = target.key;
-        Some(if target.measured_counts {
-            format!(
-                "the target is {found}, measured ({file}, given on the command line), and not test.{key} = {given} of the scene"
-            )
-        } else {
-            format!(
-                "the target is test.{key} = {given}, and not {found}, measured ({file}): remove test.{key} to take that"
-            )
-        })
-    };
-    let targets = targets(&table, Some(measured))?;
-    Ok(targets.into_iter().filter_map(told).collect())
-}
-
-/// Largest difference of a target from the measured value at which they count as the same.
-const SAME: f64 = 1e-6;
 
 /// The measured material of a test, which has to be of the same type.
 fn measured(table: &Table<'_>, kind: TestType, folder: &Path) -> Result<Option<MeasuredReference>> {

@@ -23,7 +23,7 @@ mod new_folder;
 mod pace;
 mod packings;
 mod picture;
-mod pool;
+pub(crate) mod pool;
 mod progress;
 mod report;
 mod run_scene;

@@ -95,13 +95,7 @@ fn unstable(
         state.steps, state.time_s, balance.energy_error_j, state.time_step_s, fraction_of_limit
     );
     let contact = contact_culprit(state);
-    let parted =
-        state.broken_count > 0 && state.contacts.as_ref().is_some_and(|c| !c.model.relaxes);
-    let is_unrelaxed = contact.is_some() && parted;
-    let relaxes_late = contact.is_some()
-        && state.broken_count > 0
-        && (state.contacts.as_ref())
-            .is_some_and(|c| c.model.relaxes && c.model.least_overlap > USUAL_LEAST_OVERLAP);
+    let unrelaxed = relaxation_remedy(state).filter(|_| contact.is_some());
     if let Some(contact) = contact {
         problem += &contact;
     } else if let Some((at, own_step_s)) = culprit(state) {
@@ -123,16 +117,32 @@ fn unstable(
             "; most of it in bond{which}{where_}, whose two particles alone, undamped, could take a step of {own_step_s:.4e} s"
         );
     }
-    let remedy = if is_unrelaxed {
-        "set relaxation.enabled = true: without it, fragments that separate while they overlap are pushed apart with spurious energy"
-    } else if relaxes_late {
-        "set a smaller relaxation.min_overlap, such as 1e-5: the contact force that pairs get at once where their overlap falls below it adds energy, which no smaller time step removes"
+    let remedy = if let Some(remedy) = unrelaxed {
+        remedy
     } else if fraction_of_limit > 1.0 {
         "take a smaller run.time_step, or \"auto\" for one below the limit"
     } else {
         "take a smaller run.safety_factor or run.time_step; or check loads and motions, if they are so large that the limit falls faster than it is looked for"
     };
     Diagnostic::unstable("", problem, remedy)
+}
+
+/// What to do against spurious energy, where it comes from fragments that overlap as they part: no
+/// smaller time step removes it. None: no bond has broken, or such overlaps are relaxed.
+pub fn relaxation_remedy(state: &State) -> Option<&'static str> {
+    let model = &state
+        .contacts
+        .as_ref()
+        .filter(|_| state.broken_count > 0)?
+        .model;
+    if !model.relaxes {
+        return Some(
+            "set relaxation.enabled = true: without it, fragments that separate while they overlap are pushed apart with spurious energy",
+        );
+    }
+    (model.least_overlap > USUAL_LEAST_OVERLAP).then_some(
+        "set a smaller relaxation.min_overlap, such as 1e-5: the contact force that pairs get at once where their overlap falls below it adds energy, which no smaller time step removes",
+    )
 }
 
 /// Description of the contact with the largest energy, if contacts hold more than bonds.

@@ -14,6 +14,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Side};
 
 use super::matrix::Matrix;
+use dem_physics::lanes::has_whole_sets;
 
 /// Factors of matrices of one pattern.
 #[derive(Debug)]
@@ -36,6 +37,8 @@ pub enum NoFactor {
     NoConvergence,
     /// They do not fit into memory.
     Memory,
+    /// The library that computes them does not work on this processor.
+    Processor,
 }
 
 impl DirectFactor {
@@ -62,6 +65,9 @@ impl DirectFactor {
 
     /// Computes the factors of a matrix of the pattern.
     pub fn compute(&mut self, matrix: &Matrix) -> Result<(), NoFactor> {
+        if !has_whole_sets() {
+            return Err(NoFactor::Processor);
+        }
         let values = SparseColMatRef::new(pattern(matrix), &matrix.values);
         match self {
             Self::Cholesky(symbolic, entries) => {

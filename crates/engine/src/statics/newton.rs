@@ -89,6 +89,8 @@ pub enum Cause {
     NoConvergence,
     /// The factors do not fit into memory.
     Memory,
+    /// The library that computes factors does not work on this processor.
+    Processor,
     /// It was interrupted.
     Interrupted,
 }
@@ -134,8 +136,8 @@ pub fn equilibrium(
     let degrees_of_freedom = DegreesOfFreedom::new(state, end_s);
     let symmetric = !degrees_of_freedom.has_free_torques(state);
     let matrix = Matrix::pattern(state, &degrees_of_freedom, symmetric);
-    let out_of_memory = |_| Unsolved {
-        cause: Cause::Memory,
+    let no_factor = |why| Unsolved {
+        cause: cause(why),
         fraction: 0.0,
         residual: 1.0,
     };
@@ -143,7 +145,7 @@ pub fn equilibrium(
     let mut search = Search {
         load: loads(state, end_s),
         rounding_n: rounding_n(state),
-        factor: Factor::new(&matrix, nodes).map_err(out_of_memory)?,
+        factor: Factor::new(&matrix, nodes).map_err(no_factor)?,
         degrees_of_freedom,
         matrix,
         state,
@@ -169,7 +171,8 @@ pub fn equilibrium(
             Err(cause) => {
                 search.state.particles.poses = before;
                 by = 0.5 * (to - fraction);
-                let is_hopeless = matches!(cause, Cause::Memory | Cause::Interrupted);
+                let is_hopeless =
+                    matches!(cause, Cause::Memory | Cause::Processor | Cause::Interrupted);
                 if is_hopeless || by < SMALLEST {
                     return Err(Unsolved {
                         cause,
@@ -367,6 +370,7 @@ pub fn cause(why: NoFactor) -> Cause {
         NoFactor::Pivot => Cause::Pivot,
         NoFactor::NoConvergence => Cause::NoConvergence,
         NoFactor::Memory => Cause::Memory,
+        NoFactor::Processor => Cause::Processor,
     }
 }
 

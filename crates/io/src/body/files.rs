@@ -2,6 +2,7 @@
 //! format.
 
 use std::ffi::OsStr;
+use std::fs;
 use std::io::{self, BufRead, BufReader, ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -13,7 +14,7 @@ use super::stored_walls::{FIXED_WALLS_FILE, StoredWalls};
 use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::input_file::{BUFFER_BYTES, explain_read, open_input};
-use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
+use crate::safe_write::{PendingFile, explain, write_file, write_standard_bytes};
 use crate::triangles::{is_named_so, refusal_by_name};
 
 /// The form in which a body is stored, with the names of its files.
@@ -108,8 +109,15 @@ impl Pair {
     ) -> Result<()> {
         let particles = PendingFile::write(&self.particles, particles)?;
         let bonds = PendingFile::write(&self.bonds, bonds)?;
-        particles.publish()?;
-        bonds.publish()
+        // The spheres go first and come last: whatever stops this in between leaves bonds alone,
+        // which nothing reads, and never the spheres of one body beside the bonds of another.
+        if self.particles.is_file() {
+            let old = fs::canonicalize(&self.particles);
+            let removed = old.and_then(fs::remove_file);
+            removed.map_err(|error| explain(&self.particles, &error))?;
+        }
+        bonds.publish()?;
+        particles.publish()
     }
 }
 
@@ -306,4 +314,42 @@ fn refuse_shape(path: &Path) -> Result<()> {
         "this is a shape, not a body",
         remedy,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// A write that stops between its two files leaves no spheres beside bonds of another body.
+    #[test]
+    fn half_a_pair_has_no_spheres() {
+        let folder = tempfile::tempdir().unwrap();
+        let pair = Pair::named(&folder.path().join("cake.csv"));
+        fs::write(&pair.particles, "old").unwrap();
+        let stopped = pair.write(|out| out.write_all(b"new"), |_| fs::create_dir(&pair.bonds));
+        assert!(stopped.is_err());
+        assert!(!pair.particles.exists());
+    }
+
+    /// The files that links name are replaced, and the links stay.
+    #[cfg(unix)]
+    #[test]
+    fn a_pair_behind_links_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let [real, link] =
+            ["real.csv", "link.csv"].map(|name| Pair::named(&folder.path().join(name)));
+        for (real, link) in [
+            (&real.particles, &link.particles),
+            (&real.bonds, &link.bonds),
+        ] {
+            fs::write(real, "old").unwrap();
+            std::os::unix::fs::symlink(real, link).unwrap();
+        }
+        let written = link.write(|out| out.write_all(b"new"), |out| out.write_all(b"bonds"));
+        written.unwrap();
+        assert!(link.particles.is_symlink());
+        assert_eq!(fs::read(&real.particles).unwrap(), b"new");
+        assert_eq!(fs::read(&real.bonds).unwrap(), b"bonds");
+    }
 }

@@ -28,6 +28,8 @@ const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
 
 /// Smallest energy error that is reported.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
+/// What to do against it, unless a run has found another reason.
+const SMALLER_STEP: &str = "take a smaller step (run.safety_factor)";
 
 /// Summary of a run. SI units.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -324,11 +326,17 @@ impl Summary {
     }
 
     /// Sets the verdict: reasons from the run to doubt it or to call it coarse, and those from the
-    /// summary itself.
-    pub fn judge(&mut self, warnings: Vec<String>, coarse: Vec<String>) {
+    /// summary itself. `energy_remedy`: what to do against an energy error, if the run knows better
+    /// than to take a smaller step.
+    pub fn judge(
+        &mut self,
+        warnings: Vec<String>,
+        coarse: Vec<String>,
+        energy_remedy: Option<&str>,
+    ) {
         let warnings = (self.problem.iter().cloned())
             .chain(warnings)
-            .chain(self.doubts())
+            .chain(self.doubts(energy_remedy.unwrap_or(SMALLER_STEP)))
             .collect();
         let coarse = coarse.into_iter().chain(self.small_fragments()).collect();
         self.verdict = Verdict {
@@ -365,11 +373,11 @@ impl Summary {
     }
 
     /// Reasons in the summary to doubt the result.
-    fn doubts(&self) -> Vec<String> {
+    fn doubts(&self, energy_remedy: &str) -> Vec<String> {
         let mut doubts = Vec::new();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
-                "the energy is off by {} of the largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: take a smaller step (run.safety_factor)",
+                "the energy is off by {} of the largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: {energy_remedy}",
                 significant(self.energy_error, 2),
                 significant(self.balance.energy_scale_j, 3)
             ));
@@ -377,7 +385,7 @@ impl Summary {
         let part = self.part_error.as_ref();
         if let Some(part) = part.filter(|part| part.energy_error > LARGE_ENERGY_ERROR) {
             doubts.push(format!(
-                "the energy of {} by itself is off by {} of its largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: take a smaller step (run.safety_factor)",
+                "the energy of {} by itself is off by {} of its largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: {energy_remedy}",
                 part.named(),
                 significant(part.energy_error, 2),
                 significant(part.energy_scale_j, 3)

@@ -86,6 +86,22 @@ fn two_targets_are_named_and_the_command_line_wins() {
         .replace("9 MPa", "12.05 MPa")
         .replace("0.1 MPa", "0.21 MPa");
     assert_eq!(read(&same, &[&option]).1, "");
+    // A modulus of the scene that was not measured is named as the target.
+    let mut material: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    material["young_modulus_pa"] = serde_json::Value::Null;
+    let no_modulus = folder.path().join("no-modulus.json");
+    std::fs::write(&no_modulus, material.to_string()).unwrap();
+    let (targets, said) = read(
+        &without,
+        &[&format!("test.measured={}", no_modulus.display())],
+    );
+    assert_eq!(targets, [9e6, 0.21e6]);
+    let wanted = format!(
+        "the target is test.young_modulus = 9 MPa: {} has no modulus",
+        no_modulus.display()
+    );
+    assert!(said.contains(&wanted), "{said}");
 }
 
 /// A test determines the end of the run, and all its defaults are shown as text.

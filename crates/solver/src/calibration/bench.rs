@@ -5,10 +5,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use dem_calibration::{Trial, Unknown};
-use dem_io::{Body, Diagnostic, Result};
+use dem_io::{Body, Result};
 use dem_scene::{Scene, Test, scene_from_text, set_text};
 
 use super::choice::SceneText;
+use crate::cli::pool::pool_of;
 use dem_laboratory::Specimen;
 use dem_plan::Plan;
 use dem_results::Summary;
@@ -49,14 +50,7 @@ impl Bench<'_> {
         faster: f64,
         tell: &(dyn Fn(f64) + Sync),
     ) -> Result<Trial> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-            .map_err(|error| {
-                let problem = format!("the threads cannot be started: {error}");
-                Diagnostic::failed("--threads", problem, "ask for fewer")
-            })?;
-        pool.install(|| self.test_here(factors, at, faster, tell))
+        pool_of(self.threads)?.install(|| self.test_here(factors, at, faster, tell))
     }
 
     fn test_here(

@@ -1,6 +1,7 @@
 //! The threads of a command.
 
 use dem_io::{Diagnostic, Result};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Stack of each thread. Without optimisation, the loops over contacts in AVX-512 need more than
 /// the usual 2 MiB.
@@ -23,8 +24,15 @@ pub(super) fn in_pool(
     if let Some(threads) = wanted {
         refuse_threads(threads, "leave it out for all cores")?;
     }
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(wanted.unwrap_or(0))
+    let pool = pool_of(wanted.unwrap_or(0))?;
+    let threads = pool.current_num_threads();
+    pool.install(|| work(threads))
+}
+
+/// A pool of this number of threads, 0 for all cores, each with the stack that a run needs.
+pub(crate) fn pool_of(threads: usize) -> Result<ThreadPool> {
+    ThreadPoolBuilder::new()
+        .num_threads(threads)
         .stack_size(STACK_BYTES)
         .build()
         .map_err(|error| {
@@ -33,7 +41,22 @@ pub(super) fn in_pool(
                 format!("the threads cannot be started: {error}"),
                 "ask for fewer",
             )
-        })?;
-    let threads = pool.current_num_threads();
-    pool.install(|| work(threads))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// A thread of a pool holds what overflows the usual stack of 2 MiB.
+    #[test]
+    fn a_pool_has_room_for_unoptimised_loops() {
+        let used = |byte: u8| {
+            std::hint::black_box([byte; 8 << 20])
+                .iter()
+                .any(|b| *b == byte)
+        };
+        assert!(pool_of(1).unwrap().install(|| used(1)));
+    }
 }

@@ -520,6 +520,9 @@ statistic = "mean"
     let free = format!("bonds.clay.damping.damping_ratio=left_over:{wanted:e}");
     let printed = calibrate(&bench, &["--free", &free]);
     assert!(printed.status.success(), "{printed:?}");
+    let said = String::from_utf8_lossy(&printed.stdout);
+    let row = said.lines().find(|line| line.starts_with("left_over"));
+    assert!(row.is_some_and(|row| row.contains(" J, target ")), "{said}");
     let material = bench.path("clay.toml").display().to_string();
     let after = bench.good(
         &bench.path("bar.toml"),

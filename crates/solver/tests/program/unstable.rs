@@ -76,6 +76,36 @@ angular_velocity = [0, 0, 100]
     bench.good(&scene, &["--set", "relaxation.min_overlap=1e-5"]);
 }
 
+/// A run that ends with an energy error from such overlaps has the same remedy in its verdict.
+#[test]
+fn the_verdict_blames_a_large_min_overlap_and_not_the_step() {
+    let bench = Bench::new();
+    let text = "version = 1
+run.end_time = \"40 ms\"
+relaxation.min_overlap = 0.15
+materials.m = { density = 2000, young_modulus = \"1 MPa\" }
+contacts.m-m = { restitution = 1 }
+bonds.b = { young_modulus = \"1 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = 0 } }
+[bodies.wheel]
+particles = [[-0.0095, 0, 0, 0.01], [0.0095, 0, 0, 0.01]]
+bond_list = [[0, 1]]
+material = \"m\"
+bonds = \"b\"
+angular_velocity = [0, 0, 100]
+";
+    let scene = bench.write("burst.toml", text);
+    let said = bench.good(&scene, &["--json", "--quiet"]);
+    let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let error = summary["energy_error"].as_f64().unwrap();
+    let warnings = summary["verdict"]["warnings"].to_string();
+    assert!(error > 0.01, "{error}");
+    assert!(
+        warnings.contains("is allowed: set a smaller relaxation.min_overlap")
+            && !warnings.contains("run.safety_factor"),
+        "{warnings}"
+    );
+}
+
 /// Two bars of equal bonds; in the second, listed from its end, one pair is much lighter than all
 /// others.
 pub(super) fn uneven() -> String {
