@@ -23,13 +23,15 @@ struct Bar {
 /// Layer of particles that a grip holds at each end, in mean diameters.
 const GRIP: f64 = 1.05;
 
-const BARS: [Bar; 6] = [
+const BARS: [Bar; 8] = [
     bar(
-        "chute, chute-bonded, chute-region, jaw-crusher, one-cake",
+        "chute, chute-bonded, chute-region",
         "scenes/chute.toml",
         "lump",
         2,
     ),
+    bar("one-cake", "scenes/one-cake.toml", "lump", 2),
+    bar("jaw-crusher", "scenes/jaw-crusher.toml", "lump", 2),
     bar("transfer-chute", "scenes/transfer-chute.toml", "lump", 2),
     bar("drop-height", "scenes/drop-height.toml", "lump", 2),
     bar("repeated-drops", "scenes/repeated-drops.toml", "lump", 2),

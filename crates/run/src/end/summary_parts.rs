@@ -17,8 +17,9 @@ use dem_results::summary::{
 
 /// Share of the mass of an outlet at either end that its flow leaves out.
 const TENTH: f64 = 0.1;
-/// Number of pieces below which an outlet has no flow.
-const ENOUGH_FOR_A_FLOW: usize = 20;
+/// Mass over that of a body that an inlet feeds below which an outlet has no flow: a few bodies
+/// come in bursts, in whatever many pieces.
+const ENOUGH_FOR_A_FLOW: f64 = 20.0;
 
 /// The largest energy error of bodies apart from all others, if it is more than this relative error
 /// of the whole.
@@ -52,6 +53,8 @@ pub(crate) fn population_summary(
     let inner: f64 = inner
         .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
         .sum();
+    let fed: u32 = population.inlets.iter().map(|come| come.bodies).sum();
+    let fed_kg = (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg);
     Some(PopulationSummary {
         clumps: several,
         single_sphere_bodies: clumps.all.len() - several + single_spheres(state, bodies),
@@ -59,8 +62,8 @@ pub(crate) fn population_summary(
         replaced_by_daughters: population.by_daughters.iter().sum(),
         fines_kg: population.fines_kg.iter().fold(0.0, |sum, kg| sum + kg),
         restored: population.restored,
-        fed: population.inlets.iter().map(|come| come.bodies).sum(),
-        fed_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),
+        fed,
+        fed_kg,
         delayed: population.inlets.iter().map(|come| come.delayed).sum(),
         waiting: (rules.inlets.iter().zip(&population.inlets))
             // Bodies that are due at the very end have not been tried.
@@ -74,7 +77,8 @@ pub(crate) fn population_summary(
                 let summary = OutletSummary {
                     bodies: left.bodies,
                     mass_kg: left.mass_kg,
-                    flow_kg_s: flow_kg_s(&population.discharged, number),
+                    flow_kg_s: flow_kg_s(&population.discharged, number)
+                        .filter(|_| left.mass_kg >= ENOUGH_FOR_A_FLOW * fed_kg / f64::from(fed)),
                 };
                 (outlet.name.clone(), summary)
             })
@@ -88,7 +92,7 @@ pub(crate) fn population_summary(
 }
 
 /// Mass flow through an outlet between the first and the last tenth of the mass that it took, kg/s.
-/// None: it took too few pieces, or all at once.
+/// None: it took nothing, or all at once.
 fn flow_kg_s(discharged: &[Discharged], outlet: usize) -> Option<f64> {
     let own = discharged
         .iter()
@@ -102,7 +106,7 @@ fn flow_kg_s(discharged: &[Discharged], outlet: usize) -> Option<f64> {
     });
     let [from_s, from_kg] = sums.find(|[_, sum_kg]| *sum_kg >= TENTH * all_kg)?;
     let [to_s, to_kg] = sums.find(|[_, sum_kg]| *sum_kg >= (1.0 - TENTH) * all_kg)?;
-    (left.len() >= ENOUGH_FOR_A_FLOW && to_s > from_s).then(|| (to_kg - from_kg) / (to_s - from_s))
+    (to_s > from_s).then(|| (to_kg - from_kg) / (to_s - from_s))
 }
 
 /// Bodies of one sphere that are particles and come from inlets or clumps.
