@@ -26,6 +26,7 @@ mod plots;
 mod pressing;
 mod process;
 mod replacement;
+mod resolution;
 mod rocks;
 mod round_robin;
 mod self_contact;
@@ -43,7 +44,7 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 41] = [
+const COMMANDS: [(&str, Work); 45] = [
     ("board page", board::write),
     ("board penetration", board::penetration),
     ("board times", board::measure),
@@ -71,6 +72,10 @@ const COMMANDS: [(&str, Work); 41] = [
     ("pressing", pressing::pressing),
     ("process", process::process),
     ("replacement", replacement::replacement),
+    ("resolution bonds", resolution::calibrate),
+    ("resolution chute", resolution::chute),
+    ("resolution drop", resolution::drop),
+    ("resolution weight", resolution::weight),
     ("rocks calibrate", rocks::calibrate),
     ("rocks load", rocks::load),
     ("rocks page", rocks::page),
