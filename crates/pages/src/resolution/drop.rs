@@ -36,7 +36,7 @@ pub(super) const QUESTION: Question = Question {
 };
 
 /// Specimens of each size: packings, each turned in its own way.
-const SPECIMENS: u32 = 6;
+pub(super) const SPECIMENS: usize = 6;
 /// Of what breaks, the largest piece has less than this of the mass.
 const BROKEN_BELOW: f64 = 0.9;
 /// The height tried first, m, and heights to a factor of two.
@@ -79,44 +79,50 @@ pub(super) fn height_m(rung: i32) -> f64 {
     FIRST_M * (f64::from(rung) / STEPS).exp2()
 }
 
-/// What a specimen gives: the height between the highest fall that it survives and the next one,
-/// m, what is unresolved after that one, and the processor times of all falls, s.
+/// Where the search for a height begins: a rung, and the first step from it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Start {
+    pub(super) rung: i32,
+    pub(super) step: i32,
+}
+
+/// That of the coarsest spheres. Others begin where the same specimen of larger spheres broke.
+pub(super) const START: Start = Start { rung: 0, step: 4 };
+
+/// What a specimen gives: the lowest rung from which it breaks, what is unresolved then, and the
+/// processor times of all falls, s.
 struct Broken {
-    height_m: f64,
+    rung: i32,
     unresolved: f64,
     times_s: Vec<f64>,
 }
 
-/// Looks for the height in steps of a factor of two, then by halves.
-fn broken(fall: impl Fn(i32) -> Result<Fall, Failed>) -> Result<Broken, Failed> {
-    let mut times_s = Vec::new();
-    let mut falls = |rung| {
-        let fall = fall(rung)?;
-        times_s.push(fall.processor_s);
-        Ok::<_, Failed>((fall.largest < BROKEN_BELOW, fall.unresolved))
-    };
-    let (mut low, mut high, mut last) = (None, None, f64::NAN);
-    let mut rung = 0_i32;
-    let [_, high] = loop {
-        let (breaks, unresolved) = falls(rung)?;
-        if breaks {
-            (high, last) = (Some(rung), unresolved);
+/// Looks for the rung by steps that double, then by halves.
+fn broken(start: Start, fall: impl Fn(i32) -> Result<Fall, Failed>) -> Result<Broken, Failed> {
+    let (mut low, mut high, mut unresolved) = (None, None, f64::NAN);
+    let (mut times_s, mut rung, mut step) = (Vec::new(), start.rung, start.step);
+    let rung = loop {
+        let found = fall(rung)?;
+        times_s.push(found.processor_s);
+        if found.largest < BROKEN_BELOW {
+            (high, unresolved) = (Some(rung), found.unresolved);
         } else {
             low = Some(rung);
         }
         rung = match (low, high) {
-            (None, _) => rung - STEPS as i32,
-            (_, None) => rung + STEPS as i32,
+            (None, _) => rung - step,
+            (_, None) => rung + step,
             (Some(low), Some(high)) if high - low > 1 => (low + high) / 2,
-            (Some(low), Some(high)) => break [low, high],
+            (_, Some(high)) => break high,
         };
+        step *= 2;
         if rung.abs() > 40 {
             return Err("a lump breaks at no height".into());
         }
     };
     Ok(Broken {
-        height_m: (height_m(high) * height_m(high - 1)).sqrt(),
-        unresolved: last,
+        rung,
+        unresolved,
         times_s,
     })
 }
@@ -129,21 +135,26 @@ pub(super) fn keys(bonds: Bonds, across: f64, rung: i32) -> Result<Vec<String>, 
     Ok(keys)
 }
 
-/// The break heights of all specimens, by how one falls from a rung.
+/// The break heights of all specimens, by how one falls from a rung; each is half a rung below the
+/// lowest fall that breaks it. `starts` are those of the specimens, and become those of the next
+/// smaller spheres.
 pub(super) fn answers(
     across: f64,
     bench: Option<&Bench>,
+    starts: &mut [Start],
     fall: &dyn Fn(Lump, i32) -> Result<Fall, Failed>,
 ) -> Result<Answers, Failed> {
     let (mut values, mut times_s) = (vec![Vec::new(), Vec::new()], Vec::new());
     let mut spheres = 0;
-    for number in 1..=SPECIMENS {
+    for (number, start) in (1..).zip(starts) {
         let lump = Lump { across, number };
         spheres = lump.packed(bench)?.radii.len();
-        let broken = broken(|rung| fall(lump, rung))?;
-        values[0].push(broken.height_m);
+        let broken = broken(*start, |rung| fall(lump, rung))?;
+        values[0].push((height_m(broken.rung) * height_m(broken.rung - 1)).sqrt());
         values[1].push(broken.unresolved);
         times_s.extend(broken.times_s);
+        let rung = broken.rung;
+        *start = Start { rung, step: 1 };
     }
     Ok(Answers {
         spheres,
@@ -155,7 +166,11 @@ pub(super) fn answers(
 /// Lumps that fall onto a plate.
 pub(crate) fn drop(bench: &Bench) -> Result<(), Failed> {
     let mut all = Vec::new();
+    let mut starts = [START; SPECIMENS];
     for (bonds, across) in QUESTION.cases() {
+        if across == QUESTION.sizes[0] {
+            starts = [START; SPECIMENS];
+        }
         let fall = |lump: Lump, rung: i32| {
             let mut options = sets(&keys(bonds, across, rung)?);
             options.extend([ONE_THREAD.to_owned(), body("lump", &lump.file(bench))]);
@@ -163,7 +178,7 @@ pub(crate) fn drop(bench: &Bench) -> Result<(), Failed> {
             let run = bench.run(&name, "tests/resolution/drop.toml", &options)?;
             Fall::of(&run, across)
         };
-        all.push(answers(across, Some(bench), &fall)?);
+        all.push(answers(across, Some(bench), &mut starts, &fall)?);
     }
     QUESTION.write(&all)
 }

@@ -10,7 +10,7 @@ use dem_scene::scene_from_text;
 
 use super::bonds::{Bonds, label};
 use super::compare::{Interval, convergence};
-use super::drop::{Fall, QUESTION, answers, keys};
+use super::drop::{Fall, QUESTION, SPECIMENS, START, answers, keys};
 use super::spheres::{ACROSS, Lump, REFINEMENT};
 use super::*;
 use crate::bench::{Failed, finished, root};
@@ -44,7 +44,7 @@ fn lumps_of_large_spheres_break_as_on_the_page() {
     let shown = rows(text);
     let (bonds, across) = (Bonds::Softening, ACROSS[0]);
     let fall = |lump, rung| in_place(bonds, lump, rung);
-    let found = answers(across, None, &fall).unwrap();
+    let found = answers(across, None, &mut [START; SPECIMENS], &fall).unwrap();
     let row = label(bonds, across);
     let row = shown.iter().find(|shown| shown[0] == row).unwrap();
     assert_eq!(row[2], found.spheres.to_string());
