@@ -113,8 +113,9 @@ pub(crate) fn calibrate(bench: &Bench) -> Result<(), Failed> {
             let record = read_record(&record)?;
             let [young_pa, strength_pa] = found(&record)?;
             text += &format!(
-                "{},{across},{young_pa:.0},{strength_pa:.0}\n",
-                bonds.file_name()
+                "{},{across},{:.0},{strength_pa:.0}\n",
+                bonds.file_name(),
+                10.0 * (0.1 * young_pa).round()
             );
             table.row(row(&record, size, [young_pa, strength_pa])?);
         }
