@@ -17,8 +17,6 @@ pub(crate) use self::weight::weight;
 #[cfg(test)]
 use crate::table::Table;
 
-const PAGE: &str = "tests/verification/resolution.md";
-
 #[cfg(test)]
 pub(crate) fn tables() -> Vec<Table> {
     let mut all = vec![bonds::table()];

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use dem_calibration::{Record, read_record};
 
-use super::PAGE;
 use super::spheres::{ACROSS, THICKNESS_M, diameter_m, diameters};
 use crate::bench::{Bench, Failed, ONE_THREAD, root, sets};
 use crate::cells::{change, scattered, thousands};
 use crate::table::{Table, write};
 
+pub(super) const PAGE: &str = "tests/verification/resolution.md";
 const STORED: &str = "tests/resolution/bonds.csv";
 /// Packings of the bar for each size.
 const PACKINGS: [u32; 4] = [4, 4, 3, 2];
@@ -92,8 +92,8 @@ pub(super) fn label(bonds: Bonds, across: f64) -> String {
 
 pub(super) fn table() -> Table {
     let head = "bonds, spheres across | diameter, mm | packings | spheres | tests | \
-        modulus of bonds, MPa | strength of bonds, kPa | modulus off | strength off | \
-        strength, kPa";
+        modulus of bonds, MPa | strength of bonds, kPa | their E G_f/sigma_t², mm | \
+        modulus off | strength off | strength, kPa";
     let rows = CALIBRATED.map(|bonds| ACROSS.map(|across| label(bonds, across)));
     Table::new(PAGE, "resolution bonds", head, rows.concat())
 }
@@ -117,7 +117,7 @@ pub(crate) fn calibrate(bench: &Bench) -> Result<(), Failed> {
                 bonds.file_name(),
                 10.0 * (0.1 * young_pa).round()
             );
-            table.row(row(&record, size, [young_pa, strength_pa])?);
+            table.row(row(&record, size, bonds, [young_pa, strength_pa])?);
         }
     }
     std::fs::write(root().join(STORED), text)?;
@@ -171,6 +171,7 @@ fn found(record: &Record) -> Result<[f64; 2], Failed> {
 fn row(
     record: &Record,
     size: usize,
+    bonds: Bonds,
     [young_pa, strength_pa]: [f64; 2],
 ) -> Result<Vec<String>, Failed> {
     let case = record.cases.first().ok_or("a record without a case")?;
@@ -186,6 +187,13 @@ fn row(
         tests.to_string(),
         format!("{:.2}", 1e-6 * young_pa),
         format!("{:.1}", 1e-3 * strength_pa),
+        match bonds {
+            Bonds::Softening => {
+                let length_m = young_pa * FRACTURE_ENERGY_J_M2 / strength_pa.powi(2);
+                format!("{:.0}", 1e3 * length_m)
+            }
+            Bonds::Brittle | Bonds::Held => String::new(),
+        },
     ];
     let deviations = round.deviations(&record.unknowns).into_iter();
     cells.extend(deviations.map(|off| off.map_or_else(String::new, |off| change(off, 1))));

@@ -1,8 +1,8 @@
 //! What arrives below a plate against which lumps fly?
 
-use super::compare::{Answers, Quantity, Question};
+use super::compare::{Answers, Quantity, Question, share};
 use super::spheres::{Lump, sieves};
-use super::weight::{share, sizes};
+use super::weight::sizes;
 use crate::bench::{Bench, Failed, ONE_THREAD, body, sets};
 use crate::cells::mean;
 

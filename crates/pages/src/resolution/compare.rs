@@ -3,8 +3,7 @@
 
 use dem_laboratory::{Statistic, half_width};
 
-use super::PAGE;
-use super::bonds::{Bonds, label};
+use super::bonds::{Bonds, PAGE, label};
 use super::spheres::{REFINEMENT, diameter_m};
 use crate::bench::Failed;
 use crate::cells::thousands;
@@ -16,10 +15,22 @@ pub(super) struct Quantity {
     /// From SI to its unit.
     pub(super) scale: f64,
     pub(super) digits: usize,
-    /// Whether it is compared by its logarithm, with geometric means, or by differences in points.
+    /// Whether it is compared by its logarithm, with geometric means, or by differences in points:
+    /// a part of the mass, from 0 to 1.
     pub(super) is_relative: bool,
     /// Whether it is compared with that of the finest spheres.
     pub(super) is_compared: bool,
+}
+
+/// A part, in percent.
+pub(super) const fn share(name: &'static str, is_compared: bool) -> Quantity {
+    Quantity {
+        name,
+        scale: 100.0,
+        digits: 0,
+        is_relative: false,
+        is_compared,
+    }
 }
 
 /// Questions with their tables: answers, errors over run time, convergence.
@@ -86,7 +97,14 @@ impl Quantity {
         }
         let compared: Vec<f64> = values.iter().map(|value| self.compared(*value)).collect();
         let interval = Interval::of(&compared);
-        let back = |value: f64| self.scale * if self.is_relative { value.exp() } else { value };
+        let back = |value: f64| {
+            let value = if self.is_relative {
+                value.exp()
+            } else {
+                value.clamp(0.0, 1.0)
+            };
+            self.scale * value
+        };
         let Interval { mean, least, most } = interval.map(back);
         let digits = self.digits;
         format!("{mean:.digits$} ({least:.digits$} to {most:.digits$})")

@@ -1,8 +1,8 @@
 //! From which height does a lump break?
 
 use super::bonds::Bonds;
-use super::compare::{Answers, Quantity, Question};
-use super::spheres::{ACROSS, Lump, resolved_m, sieves};
+use super::compare::{Answers, Quantity, Question, share};
+use super::spheres::{ACROSS, Lump, passing, resolved_m, sieves};
 use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
 use crate::cells::mean;
 
@@ -10,7 +10,7 @@ pub(super) const QUESTION: Question = Question {
     words: "resolution drop",
     heads: [
         "bonds, spheres across | diameter, mm | spheres | break height, m | \
-            finer than three diameters at this height, %",
+            finer than three diameters, % | bonds damaged, %",
         "bonds, spheres across | processor time of a fall, s | over the coarsest | \
             break height off the finest",
         "bonds: result | 4 to 6 | 6 to 9 | 9 to 13.5 | order | without end",
@@ -23,13 +23,8 @@ pub(super) const QUESTION: Question = Question {
             is_relative: true,
             is_compared: true,
         },
-        Quantity {
-            name: "unresolved, %",
-            scale: 100.0,
-            digits: 0,
-            is_relative: false,
-            is_compared: false,
-        },
+        share("unresolved, %", false),
+        share("bonds damaged, %", false),
     ],
     sizes: &ACROSS,
     held: &[4.0, 6.0],
@@ -49,6 +44,8 @@ pub(super) struct Fall {
     /// Mass fractions of the largest piece and of what is finer than three diameters.
     largest: f64,
     unresolved: f64,
+    /// Part of the bonds that have softened and are not broken.
+    damaged: f64,
     processor_s: f64,
 }
 
@@ -57,21 +54,10 @@ impl Fall {
         Ok(Self {
             largest: run.fragments().mass_fraction_of_largest,
             unresolved: passing(run, resolved_m(across))?,
+            damaged: run.summary.damaged_bonds.unwrap_or(0) as f64 / run.summary.bonds as f64,
             processor_s: run.processor_s(),
         })
     }
-}
-
-/// Mass fraction of all fragments that passes a sieve.
-pub(super) fn passing(run: &Run, sieve_m: f64) -> Result<f64, Failed> {
-    let columns = ["body", "location", "sieve_m", "passing_fraction"];
-    for [body, location, opening, fraction] in run.words("distribution.csv", columns)? {
-        let is_sieve = (opening.parse::<f64>()? / sieve_m - 1.0).abs() < 1e-6;
-        if body == "all" && location == "both" && is_sieve {
-            return Ok(fraction.parse()?);
-        }
-    }
-    Err("a run without its sieve".into())
 }
 
 /// A height of the ladder, m.
@@ -89,30 +75,30 @@ pub(super) struct Start {
 /// That of the coarsest spheres. Others begin where the same specimen of larger spheres broke.
 pub(super) const START: Start = Start { rung: 0, step: 4 };
 
-/// What a specimen gives: the lowest rung from which it breaks, what is unresolved then, and the
+/// What a specimen gives: the lowest rung from which it breaks, what that fall leaves, and the
 /// processor times of all falls, s.
 struct Broken {
     rung: i32,
-    unresolved: f64,
+    fall: Fall,
     times_s: Vec<f64>,
 }
 
 /// Looks for the rung by steps that double, then by halves.
 fn broken(start: Start, fall: impl Fn(i32) -> Result<Fall, Failed>) -> Result<Broken, Failed> {
-    let (mut low, mut high, mut unresolved) = (None, None, f64::NAN);
+    let (mut low, mut high): (Option<i32>, Option<(i32, Fall)>) = (None, None);
     let (mut times_s, mut rung, mut step) = (Vec::new(), start.rung, start.step);
-    let rung = loop {
+    let (rung, fall) = loop {
         let found = fall(rung)?;
         times_s.push(found.processor_s);
         if found.largest < BROKEN_BELOW {
-            (high, unresolved) = (Some(rung), found.unresolved);
+            high = Some((rung, found));
         } else {
             low = Some(rung);
         }
         rung = match (low, high) {
             (None, _) => rung - step,
             (_, None) => rung + step,
-            (Some(low), Some(high)) if high - low > 1 => (low + high) / 2,
+            (Some(low), Some((high, _))) if high - low > 1 => (low + high) / 2,
             (_, Some(high)) => break high,
         };
         step *= 2;
@@ -122,7 +108,7 @@ fn broken(start: Start, fall: impl Fn(i32) -> Result<Fall, Failed>) -> Result<Br
     };
     Ok(Broken {
         rung,
-        unresolved,
+        fall,
         times_s,
     })
 }
@@ -144,14 +130,15 @@ pub(super) fn answers(
     starts: &mut [Start],
     fall: &dyn Fn(Lump, i32) -> Result<Fall, Failed>,
 ) -> Result<Answers, Failed> {
-    let (mut values, mut times_s) = (vec![Vec::new(), Vec::new()], Vec::new());
+    let (mut values, mut times_s) = (vec![Vec::new(); 3], Vec::new());
     let mut spheres = 0;
     for (number, start) in (1..).zip(starts) {
         let lump = Lump { across, number };
         spheres = lump.packed(bench)?.radii.len();
         let broken = broken(*start, |rung| fall(lump, rung))?;
         values[0].push((height_m(broken.rung) * height_m(broken.rung - 1)).sqrt());
-        values[1].push(broken.unresolved);
+        values[1].push(broken.fall.unresolved);
+        values[2].push(broken.fall.damaged);
         times_s.extend(broken.times_s);
         let rung = broken.rung;
         *start = Start { rung, step: 1 };

@@ -9,7 +9,7 @@ use dem_pack::cli::thread_pool;
 use dem_pack::{BodySettings, PackSettings, make_body};
 use nalgebra::{Rotation3, Vector3};
 
-use crate::bench::{Bench, Failed};
+use crate::bench::{Bench, Failed, Run};
 use crate::shapes::{shape, sizes};
 
 /// Spheres across the lump and the bar: each size is two thirds of the one before.
@@ -96,4 +96,16 @@ pub(super) fn sieves(across: f64) -> String {
 /// The smallest size that such spheres resolve, m: three diameters.
 pub(super) fn resolved_m(across: f64) -> f64 {
     3.0 * diameter_m(across)
+}
+
+/// Mass fraction of all fragments that passes a sieve.
+pub(super) fn passing(run: &Run, sieve_m: f64) -> Result<f64, Failed> {
+    let columns = ["body", "location", "sieve_m", "passing_fraction"];
+    for [body, location, opening, fraction] in run.words("distribution.csv", columns)? {
+        let is_sieve = (opening.parse::<f64>()? / sieve_m - 1.0).abs() < 1e-6;
+        if body == "all" && location == "both" && is_sieve {
+            return Ok(fraction.parse()?);
+        }
+    }
+    Err("a run without its sieve".into())
 }

@@ -8,11 +8,10 @@ use dem_results::folder::{Existing, ResultsFolder};
 use dem_run::{RunSettings, plan, run};
 use dem_scene::scene_from_text;
 
-use super::bonds::{Bonds, label};
+use super::bonds::{Bonds, PAGE, label};
 use super::compare::{Interval, convergence};
 use super::drop::{Fall, QUESTION, SPECIMENS, START, answers, keys};
 use super::spheres::{ACROSS, Lump, REFINEMENT};
-use super::*;
 use crate::bench::{Failed, finished, root};
 use crate::table::{parts, rows};
 

@@ -1,11 +1,11 @@
 //! How fine does a weight break a lump?
 
-use super::compare::{Answers, Quantity, Question};
-use super::drop::passing;
-use super::spheres::{ACROSS, Lump, QUARTER_M, resolved_m, sieves};
+use dem_io::Body;
+
+use super::compare::{Answers, Quantity, Question, share};
+use super::spheres::{ACROSS, Lump, QUARTER_M, passing, resolved_m, sieves};
 use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
 use crate::cells::mean;
-use dem_io::Body;
 
 pub(super) const QUESTION: Question = Question {
     words: "resolution weight",
@@ -31,17 +31,6 @@ pub(super) const QUESTION: Question = Question {
     sizes: &ACROSS,
     held: &[4.0, 6.0],
 };
-
-/// A part of the mass.
-pub(super) const fn share(name: &'static str, is_compared: bool) -> Quantity {
-    Quantity {
-        name,
-        scale: 100.0,
-        digits: 0,
-        is_relative: false,
-        is_compared,
-    }
-}
 
 /// Specimens of each size: packings, each turned in its own way.
 const SPECIMENS: u32 = 6;
