@@ -138,7 +138,7 @@ impl Quantity {
 
 /// Order and limit of the last three of values whose spheres shrink by the same ratio
 /// (Richardson), or why there are none: the last two changes have to be more than scatter, in the
-/// same direction, and shrink.
+/// same direction, and to shrink by more than scatter.
 pub(super) fn convergence(last: f64, changes: &[Interval]) -> Result<[f64; 2], &'static str> {
     let [.., before, after] = changes else {
         return Err("too few sizes");
@@ -146,10 +146,18 @@ pub(super) fn convergence(last: f64, changes: &[Interval]) -> Result<[f64; 2], &
     if !(before.is_other_than_zero() && after.is_other_than_zero()) {
         return Err("changes within the scatter");
     }
-    let ratio = before.mean / after.mean;
-    if ratio <= 1.0 {
-        return Err("changes do not shrink");
+    if before.mean * after.mean < 0.0 {
+        return Err("changes turn");
     }
+    let size = |change: &Interval| {
+        let [a, b] = [change.least.abs(), change.most.abs()];
+        [a.min(b), a.max(b)]
+    };
+    let [before_ends, after_ends] = [before, after].map(size);
+    if before_ends[0] <= after_ends[1] {
+        return Err("changes do not shrink beyond the scatter");
+    }
+    let ratio = before.mean / after.mean;
     let order = ratio.ln() / REFINEMENT.ln();
     Ok([order, last + after.mean / (ratio - 1.0)])
 }
