@@ -1,5 +1,7 @@
 //! From which height does a lump break?
 
+use dem_io::Body;
+
 use super::bonds::Bonds;
 use super::compare::{Answers, Quantity, Question, share};
 use super::spheres::{ACROSS, Lump, passing, resolved_m, sieves};
@@ -128,14 +130,15 @@ pub(super) fn answers(
     across: f64,
     bench: Option<&Bench>,
     starts: &mut [Start],
-    fall: &dyn Fn(Lump, i32) -> Result<Fall, Failed>,
+    fall: &dyn Fn(Lump, &Body, i32) -> Result<Fall, Failed>,
 ) -> Result<Answers, Failed> {
     let (mut values, mut times_s) = (vec![Vec::new(); 3], Vec::new());
     let mut spheres = 0;
     for (number, start) in (1..).zip(starts) {
         let lump = Lump { across, number };
-        spheres = lump.packed(bench)?.radii.len();
-        let broken = broken(*start, |rung| fall(lump, rung))?;
+        let packed = lump.packed(bench)?;
+        spheres = packed.radii.len();
+        let broken = broken(*start, |rung| fall(lump, &packed, rung))?;
         values[0].push((height_m(broken.rung) * height_m(broken.rung - 1)).sqrt());
         values[1].push(broken.fall.unresolved);
         values[2].push(broken.fall.damaged);
@@ -158,7 +161,7 @@ pub(crate) fn drop(bench: &Bench) -> Result<(), Failed> {
         if across == QUESTION.sizes[0] {
             starts = [START; SPECIMENS];
         }
-        let fall = |lump: Lump, rung: i32| {
+        let fall = |lump: Lump, _: &Body, rung: i32| {
             let mut options = sets(&keys(bonds, across, rung)?);
             options.extend([ONE_THREAD.to_owned(), body("lump", &lump.file(bench))]);
             let name = format!("drop-{}-{}-{rung}", bonds.file_name(), lump.name());

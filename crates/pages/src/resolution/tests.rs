@@ -4,6 +4,7 @@
 
 use std::sync::atomic::AtomicBool;
 
+use dem_io::Body;
 use dem_results::folder::{Existing, ResultsFolder};
 use dem_run::{RunSettings, plan, run};
 use dem_scene::scene_from_text;
@@ -16,11 +17,11 @@ use crate::bench::{Failed, finished, root};
 use crate::table::{parts, rows};
 
 /// A fall of a lump in this process.
-fn in_place(bonds: Bonds, lump: Lump, rung: i32) -> Result<Fall, Failed> {
+fn in_place(bonds: Bonds, lump: Lump, packed: &Body, rung: i32) -> Result<Fall, Failed> {
     let text = std::fs::read_to_string(root().join("tests/resolution/drop.toml"))?;
     let keys = keys(bonds, lump.across, rung)?;
     let scene = scene_from_text(&text, "drop.toml", &keys)?;
-    let bodies = [("lump".to_owned(), lump.packed(None)?)];
+    let bodies = [("lump".to_owned(), packed.clone())];
     let plan = plan(&scene, bodies.into(), 1, false)?;
     let parent = tempfile::tempdir()?;
     let folder = ResultsFolder::create(&parent.path().join("out"), Existing::Refuse)?;
@@ -42,7 +43,7 @@ fn lumps_of_large_spheres_break_as_on_the_page() {
     let [_, text, _] = parts(&page, QUESTION.words, 0).unwrap();
     let shown = rows(text);
     let (bonds, across) = (Bonds::Softening, ACROSS[0]);
-    let fall = |lump, rung| in_place(bonds, lump, rung);
+    let fall = |lump: Lump, packed: &Body, rung| in_place(bonds, lump, packed, rung);
     let found = answers(across, None, &mut [START; SPECIMENS], &fall).unwrap();
     let row = label(bonds, across);
     let row = shown.iter().find(|shown| shown[0] == row).unwrap();
