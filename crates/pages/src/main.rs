@@ -27,6 +27,7 @@ mod plots;
 mod pressing;
 mod process;
 mod replacement;
+mod resolution;
 mod rocks;
 mod round_robin;
 mod self_contact;
@@ -44,7 +45,7 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 42] = [
+const COMMANDS: [(&str, Work); 46] = [
     ("board page", board::write),
     ("board penetration", board::penetration),
     ("board times", board::measure),
@@ -73,6 +74,10 @@ const COMMANDS: [(&str, Work); 42] = [
     ("pressing", pressing::pressing),
     ("process", process::process),
     ("replacement", replacement::replacement),
+    ("resolution bonds", resolution::calibrate),
+    ("resolution chute", resolution::chute),
+    ("resolution drop", resolution::drop),
+    ("resolution weight", resolution::weight),
     ("rocks calibrate", rocks::calibrate),
     ("rocks load", rocks::load),
     ("rocks page", rocks::page),

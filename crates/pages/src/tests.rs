@@ -11,7 +11,8 @@ use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
     COMMANDS, board, bodies, bulk, calibration, calibration_cases, dynamic, fracture, laboratory,
-    packing, parameters, pressing, process, replacement, rocks, round_robin, self_contact, thesis,
+    packing, parameters, pressing, process, replacement, resolution, rocks, round_robin,
+    self_contact, thesis,
 };
 
 fn tables() -> Vec<Table> {
@@ -29,6 +30,7 @@ fn tables() -> Vec<Table> {
     all.extend(pressing::tables());
     all.extend(process::tables());
     all.extend(replacement::tables());
+    all.extend(resolution::tables());
     all.extend(rocks::tables());
     all.extend(round_robin::tables());
     all.extend(self_contact::tables());

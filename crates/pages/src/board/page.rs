@@ -1,7 +1,7 @@
 //! The table of the board.
 
 use super::robin;
-use super::rows::{Row, bonded, measured, of_programs, of_rocks, of_sections, of_tables};
+use super::rows::{Row, bonded, measured, of_programs, of_rocks, of_sections, of_sizes, of_tables};
 use crate::bench::{Bench, Failed};
 use crate::table::{Table, write as write_tables};
 
@@ -21,7 +21,7 @@ fn row_cells(row: Row) -> Vec<String> {
 }
 
 /// The tables of the page, whole: one for each kind of source.
-pub(crate) fn tables() -> Result<[Table; 5], Failed> {
+pub(crate) fn tables() -> Result<[Table; 6], Failed> {
     let mut tables = Vec::new();
     let of_others = [robin::rows()?, measured()?, of_rocks()?].concat();
     for rows in [
@@ -29,6 +29,7 @@ pub(crate) fn tables() -> Result<[Table; 5], Failed> {
         of_programs()?,
         bonded()?,
         of_tables()?,
+        of_sizes()?,
         of_sections()?,
     ] {
         let page = "tests/verification/board.md";
@@ -39,7 +40,7 @@ pub(crate) fn tables() -> Result<[Table; 5], Failed> {
         }
         tables.push(table);
     }
-    tables.try_into().map_err(|_| "not five tables".into())
+    tables.try_into().map_err(|_| "not six tables".into())
 }
 
 pub(crate) fn write(_: &Bench) -> Result<(), Failed> {

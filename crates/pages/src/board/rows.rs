@@ -207,6 +207,84 @@ const MEASURED: [Pick; 9] = [
     },
 ];
 
+const RESOLUTION: &str = "tests/verification/resolution.md";
+
+/// A result with larger spheres beside that with the finest ones.
+const fn of_resolution(
+    case: &'static str,
+    section: &'static str,
+    [row, finest]: [&'static str; 2],
+    column: &'static str,
+    time: &'static str,
+) -> Pick {
+    Pick {
+        case,
+        source: "the same with the finest spheres of the page",
+        page: RESOLUTION,
+        section,
+        row,
+        ours: column,
+        theirs: [finest, column],
+        time,
+    }
+}
+
+const FALLS: &str = "From which height does a lump break?";
+const WEIGHTS: &str = "How fine does a weight break it?";
+const CHUTES: &str = "What arrives below a plate?";
+const BRITTLE: [&str; 2] = ["brittle, 6", "brittle, 13.5"];
+const SOFTENING: [&str; 2] = ["5 J/m2, 6", "5 J/m2, 13.5"];
+
+/// Results with six spheres across.
+const COARSE: [Pick; 6] = [
+    of_resolution(
+        "break height with 6 spheres across, brittle bonds, m",
+        FALLS,
+        BRITTLE,
+        "break height, m",
+        "processor time of a fall, s",
+    ),
+    of_resolution(
+        "the same, bonds with a fracture energy",
+        FALLS,
+        SOFTENING,
+        "break height, m",
+        "processor time of a fall, s",
+    ),
+    of_resolution(
+        "d50 under a weight with 6 spheres across, brittle bonds, mm",
+        WEIGHTS,
+        BRITTLE,
+        "d50, mm",
+        "processor time of a test, s",
+    ),
+    of_resolution(
+        "the same, bonds with a fracture energy",
+        WEIGHTS,
+        SOFTENING,
+        "d50, mm",
+        "processor time of a test, s",
+    ),
+    of_resolution(
+        "d50 below a plate with 6 spheres across, brittle bonds, mm",
+        CHUTES,
+        ["brittle, 6", "brittle, 9"],
+        "d50, mm",
+        "processor time of six lumps, s",
+    ),
+    of_resolution(
+        "the same, bonds with a fracture energy",
+        CHUTES,
+        ["5 J/m2, 6", "5 J/m2, 9"],
+        "d50, mm",
+        "processor time of six lumps, s",
+    ),
+];
+
+pub(super) fn of_sizes() -> Result<Vec<Row>, Failed> {
+    COARSE.iter().map(picked).collect()
+}
+
 /// The row of some tables whose first cells begin with these words, in a table with this column,
 /// and the place of the column.
 fn find(tables: &[Vec<Vec<String>>], row: &str, column: &str) -> Option<(Vec<String>, usize)> {
