@@ -50,6 +50,15 @@ def test_settings_reach_the_scene(tmp_path: Path) -> None:
     assert results.verdict == crumble.Verdict("sound")
 
 
+def test_tables_alone_are_kept(tmp_path: Path) -> None:
+    results = crumble.run(SPIN, tmp_path / "spin", set={"run.end_time": "10 ms"}, keep="tables")
+    left = {path.name for path in results.folder.iterdir()}
+    assert {"summary.json", "series.csv", "report.html"} <= left
+    assert not {"frames", "plots", "checkpoint"} & {name.split(".")[0] for name in left}
+    with pytest.raises(crumble.Error, match="keep"):
+        crumble.run(SPIN, tmp_path / "other", keep="nothing")
+
+
 def test_values_of_python_as_toml() -> None:
     given: dict[str, Any] = {"bodies": {"cake": {"drop": {"height": "1 m"}, "bonds": "a\"b"}}}
     paths = ['run.adaptive=true', 'bodies.cake.drop.height="1 m"', 'bodies.cake.bonds="a\\"b"']

@@ -155,6 +155,7 @@ fn place_particles(
     set_moving(entry, particles, first_particle);
     Ok(PlacedBody {
         name: name.to_owned(),
+        came_as: None,
         first_particle,
         particles: numbers,
         first_bond: 0,

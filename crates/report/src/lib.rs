@@ -29,15 +29,15 @@ use sections::{
 /// The page of a finished run from its folder and its summary (the text of `summary.json`). Refuses
 /// another summary, and missing or damaged frames.
 pub fn report(folder: &Path, summary: &str) -> Result<String> {
-    let summary = read_summary(summary).map_err(|error| {
+    let (summary, scene) = read_summary(summary).map_err(|error| {
         Diagnostic::input(
             folder.join("summary.json").display().to_string(),
             format!("this is not the summary of a run: {error}"),
             "name the folder of a run that has ended",
         )
     })?;
+    let mut page = Page::new(&title(&scene, folder, &summary));
     let folder = Folder::read(folder)?;
-    let mut page = Page::new(&title(&summary));
     add_verdict(&mut page, &summary);
     if let Some(view) = view::view(&folder.subject(&summary))? {
         page.heading("View");
@@ -58,10 +58,11 @@ pub fn report(folder: &Path, summary: &str) -> Result<String> {
 }
 
 /// The summary with the names of files in place of their paths: a page that is shared does not name
-/// the folders of a machine.
-fn read_summary(text: &str) -> serde_json::Result<Summary> {
+/// the folders of a machine. With the path of the scene.
+fn read_summary(text: &str) -> serde_json::Result<(Summary, String)> {
     let mut json: Value = serde_json::from_str(text)?;
     let summary: Summary = from_json(json.clone())?;
+    let scene = summary.scene.clone();
     let bodies = summary.inputs.bodies.into_values();
     let walls = summary.inputs.walls.into_values();
     let mut paths: Vec<String> = (bodies.filter_map(|body| body.file))
@@ -71,7 +72,7 @@ fn read_summary(text: &str) -> serde_json::Result<Summary> {
     paths.retain(|path| !path.is_empty());
     paths.sort_by_key(|path| std::cmp::Reverse(path.len()));
     shorten(&mut json, &paths);
-    from_json(json)
+    Ok((from_json(json)?, scene))
 }
 
 /// Replaces these paths by their last parts in all texts.
@@ -92,16 +93,28 @@ fn shorten(value: &mut Value, paths: &[String]) {
 }
 
 /// The name of the scene without folder and ending; of a `scene.toml` that of its folder.
-fn title(summary: &Summary) -> String {
-    let path = Path::new(&summary.scene);
-    let folder = path.parent().and_then(Path::file_name);
-    let stem = match path.file_stem() {
-        Some(stem) if stem == "scene" => folder.unwrap_or(stem),
-        stem => stem.unwrap_or_default(),
+fn title(scene: &str, results: &Path, summary: &Summary) -> String {
+    let path = Path::new(scene);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = match stem.as_ref() {
+        "scene" => folder_of_scene(path, results).unwrap_or(stem.into_owned()),
+        _ => stem.into_owned(),
     };
-    let stem = stem.to_string_lossy();
     match &summary.test {
         Some(test) => format!("{stem}: {}", test.kind.name().replace('-', " ")),
-        None => stem.into_owned(),
+        None => stem,
     }
+}
+
+/// The name of the folder of a `scene.toml`. Named without a folder, the scene is beside its results
+/// `scene-out`; results elsewhere have names of their own.
+fn folder_of_scene(scene: &Path, results: &Path) -> Option<String> {
+    let name = |path: &Path| Some(path.file_name()?.to_string_lossy().into_owned());
+    scene.parent().and_then(name).or_else(|| {
+        let results = results.canonicalize().ok()?;
+        match results.ends_with("scene-out") {
+            true => name(results.parent()?),
+            false => name(&results),
+        }
+    })
 }

@@ -178,6 +178,7 @@ fn markup(head: &str, data: &str, chosen: &Chosen) -> Markup {
                     button class="play" type="button" { "Play" }
                     input class="slider" type="range" min="0" value="0" aria-label="Time";
                     output class="time" {}
+                    button class="full" type="button" { "Full screen" }
                 }
                 div class="choices" {
                     label { "Colour " select class="mode" {} }
@@ -199,7 +200,6 @@ fn markup(head: &str, data: &str, chosen: &Chosen) -> Markup {
                     } }
                     input class="cut" type="range" min="0" max="1" step="0.005" value="0.5" disabled[true] aria-label="Place of the cut";
                     button class="reset" type="button" { "Reset" }
-                    button class="full" type="button" { "Full screen" }
                 }
             }
         }

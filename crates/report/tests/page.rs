@@ -19,7 +19,7 @@ fn verdict_results_input_and_time_are_there() {
         "20 ms simulated in 1.5 s on 2 threads, ended by end time; dem-run 0.1.0.",
         "height",
         "250 mm",
-        "by tension",
+        "broken in tension",
         "seed 7",
         "Set: run.end_time=0.02.",
         "cake.vtp",
@@ -31,8 +31,54 @@ fn verdict_results_input_and_time_are_there() {
     ] {
         assert!(page.contains(text), "{text}");
     }
-    assert!(!page.contains("by shear"), "no bond broke in shear");
+    assert!(!page.contains("in shear"), "no bond broke in shear");
     assert!(!page.contains("somebody"), "folders are not named");
+}
+
+/// The share of the largest fragment stands once, whether or not the scene measures it.
+#[test]
+fn the_largest_fragment_stands_once() {
+    let folder = folder_with(&MOMENTS);
+    let mut summary = summary();
+    summary["fragments"] = json!({"count": 4, "inside": 4, "mass_fraction_of_largest": 0.82});
+    let line = "largest fragment, share";
+    assert!(page_of(&folder, &summary).contains(line));
+    summary["measures"] = json!({"piece": {"value": 0.82, "unit": ""}});
+    assert!(page_of(&folder, &summary).contains(line));
+    summary["inputs"]["scene"]["measures.piece.quantity"] = json!("mass_fraction_of_largest");
+    let page = page_of(&folder, &summary);
+    assert!(page.contains("0.82") && !page.contains(line));
+}
+
+/// Only walls that move to and fro have a stroke.
+#[test]
+fn belts_have_no_column_of_strokes() {
+    let folder = folder_with(&MOMENTS);
+    let mut summary = summary();
+    summary["walls"] = json!({"belt": {"work_j": 1.0, "mean_power_w": 2.0}});
+    assert!(!page_of(&folder, &summary).contains("stroke"));
+    summary["walls"]["jaw"] = json!({"stroke_m": 0.01, "work_j": 3.0, "mean_power_w": 4.0});
+    let page = page_of(&folder, &summary);
+    assert!(page.contains("stroke") && page.contains("10 mm"));
+}
+
+/// A `scene.toml` has the name of its folder, also if it was named from within.
+#[test]
+fn a_scene_has_the_name_of_its_folder() {
+    let place = tempfile::tempdir().unwrap();
+    let title = |scene: &str, results: &str| {
+        let results = place.path().join("mill").join(results);
+        std::fs::create_dir_all(&results).unwrap();
+        let mut summary = summary();
+        summary["scene"] = json!(scene);
+        let page = dem_report::report(&results, &summary.to_string()).unwrap();
+        let (_, rest) = page.split_once("<title>").unwrap();
+        rest.split_once("</title>").unwrap().0.to_owned()
+    };
+    assert_eq!(title("/home/somebody/drop/scene.toml", "scene-out"), "drop");
+    assert_eq!(title("scene.toml", "scene-out"), "mill");
+    assert_eq!(title("scene.toml", "second"), "second");
+    assert_eq!(title("silo.toml", "scene-out"), "silo");
 }
 
 #[test]

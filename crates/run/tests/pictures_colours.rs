@@ -41,6 +41,7 @@ fn the_largest_piece_keeps_the_colour_and_singles_are_grey() {
 fn without_clusters_bodies_have_colours() {
     let body = |particles: Vec<u32>| PlacedBody {
         name: String::new(),
+        came_as: None,
         first_particle: 0,
         particles,
         first_bond: 0,

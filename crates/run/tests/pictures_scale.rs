@@ -70,6 +70,7 @@ fn masses_are_those_of_fragments_or_of_bodies_that_cannot_break() {
     };
     let rod = PlacedBody {
         name: "rod".to_owned(),
+        came_as: None,
         first_particle: 0,
         particles: vec![0, 1, 2],
         first_bond: 0,

@@ -22,6 +22,16 @@ impl Schema {
         self.keys.iter().find(|key| key.name == name)
     }
 
+    /// The key at a path of a scene: `bodies.NAME.drop.height`.
+    pub(super) fn key_at(&self, path: &str) -> Option<&'static Key> {
+        let (name, rest) = path.split_once('.').unwrap_or((path, ""));
+        let key = self.key(name)?;
+        if rest.is_empty() {
+            return Some(key);
+        }
+        key.kind.key_at(rest)
+    }
+
     pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
         self.keys.iter().map(|key| key.name)
     }
@@ -91,6 +101,20 @@ impl Kind {
         most: Some(u32::MAX as u64),
         of: "",
     };
+
+    /// The key at a path within a value of this type.
+    fn key_at(&self, path: &str) -> Option<&'static Key> {
+        match self {
+            Self::Table(schema) => schema.key_at(path),
+            Self::Open(schema, others) => {
+                let other = || others.key_at(path.split_once('.')?.1);
+                schema.key_at(path).or_else(other)
+            }
+            Self::Named(_, kind) => kind.key_at(path.split_once('.')?.1),
+            Self::Either(kinds) => kinds.iter().find_map(|kind| kind.key_at(path)),
+            _ => None,
+        }
+    }
 }
 
 /// The value of a key that is left out.
@@ -273,6 +297,15 @@ impl Key {
     /// True if it is a number within the limits.
     pub(super) fn allows(&self, value: f64) -> bool {
         self.limits.contains(&value)
+    }
+
+    /// True for numbers whose limits leave out all below 0, and for whole ones.
+    pub(super) fn is_never_negative(&self) -> bool {
+        let from_zero = match self.limits.0 {
+            Excluded(low) | Included(low) => low >= 0.0,
+            Unbounded => false,
+        };
+        from_zero || matches!(self.kind, Kind::Whole { .. })
     }
 
     /// "more than 0 m", angles in degrees; empty without limits.

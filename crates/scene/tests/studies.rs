@@ -145,7 +145,8 @@ fn ranges_begin_and_end_where_they_say() {
     assert_eq!(study.axes[1].sizes(), None, "a size is above 0");
 }
 
-/// Values are shown as written, vectors along one axis by their component there.
+/// Values are shown as written, vectors along one axis by their component there, tables by the key
+/// in which they differ.
 #[test]
 fn values_have_labels_and_numbers() {
     let study = study(&format!(
@@ -156,8 +157,16 @@ fn values_have_labels_and_numbers() {
 "run.gravity" = {{ from = "-1 m/s2", to = "1 m/s2", count = 3 }}
 "run.seed" = [3, 4]
 "bonds.steel.model" = ["timoshenko", "parallel"]
+"bodies.bar.rotation" = [{{ axis = [1, 0, 0], angle = "24 deg" }}, {{ angle = "41 deg", axis = [1, 0, 0] }}]
+"bodies.bar.drop" = [{{ height = 1, onto = "a" }}, {{ height = 2, onto = "b" }}]
 {TIP}"#
     ));
+    assert_eq!(labels(&study, 6), ["24 deg", "41 deg"]);
+    let angles = study.axes[6].numbers();
+    assert_eq!(angles, Some((vec![24.0, 41.0], "deg".to_owned())));
+    let both = ["{ height = 1, onto = a }", "{ height = 2, onto = b }"];
+    assert_eq!(labels(&study, 7), both);
+    assert_eq!(study.axes[7].numbers(), None);
     assert_eq!(labels(&study, 0), ["-0.5 m/s", "0", "-2 m/s"]);
     let numbers = |axis: usize| study.axes[axis].numbers();
     assert_eq!(numbers(0), Some((vec![-0.5, 0.0, -2.0], "m/s".to_owned())));

@@ -83,8 +83,11 @@ pub struct ProbabilityFit {
     pub a: f64,
     /// b.
     pub b: f64,
-    /// The values of the parameter at 10, 50 and 90 %, in its unit as written.
+    /// The values of the parameter at 10, 50 and 90 %, in its unit as written: without those, and
+    /// the ends of intervals, that are negative where the parameter never is.
     pub values: Vec<ValueAt>,
+    /// Which of 10, 50 and 90 % the curve has at a negative value that the parameter never has.
+    pub at_none: Vec<f64>,
     /// Whether the runs show, with a confidence of 95 %, that the parameter matters.
     pub depends: bool,
     /// Whether a value of the parameter separates the runs with the outcome from those without.
@@ -114,7 +117,7 @@ impl Probability {
             ProbabilityCase {
                 settings: settings(study, wanted.over, &choice),
                 choice,
-                ..ProbabilityCase::of(points, wanted.is_log)
+                ..ProbabilityCase::of(points, wanted)
             }
         };
         Some(Self {
@@ -165,8 +168,10 @@ impl Probability {
                 "{outcome}{of_case} in {found}{confidence}; there is no curve over {parameter}"
             );
         };
+        let at_none = fit.at_none.iter();
+        let at_none = at_none.map(|p| format!("{} % at no value above 0", percent(*p)));
         let values = fit.values.iter().map(|value| self.value_in_words(value));
-        let values: Vec<String> = values.collect();
+        let values: Vec<String> = at_none.chain(values).collect();
         let values = match values.is_empty() {
             true => "the same at all values".to_owned(),
             false => values.join(", "),
@@ -276,7 +281,9 @@ fn points(
 
 impl ProbabilityCase {
     /// The case of these points, without its place among the others.
-    fn of(mut points: Vec<ProbabilityPoint>, is_log: bool) -> Self {
+    fn of(mut points: Vec<ProbabilityPoint>, wanted: &study::Probability) -> Self {
+        let is_log = wanted.is_log;
+        let is_possible = |value: f64| value > 0.0 || !wanted.is_never_negative;
         let x = |value: f64| if is_log { value.ln() } else { value };
         let trials = points.iter().map(|point| Trials {
             x: x(point.value),
@@ -299,7 +306,9 @@ impl ProbabilityCase {
             let value = |x: f64| if is_log { x.exp() } else { x };
             let in_unit = |at: ValueAt| ValueAt {
                 value: value(at.value),
-                between: at.between.map(|end| end.map(value)),
+                between: at
+                    .between
+                    .map(|end| end.map(value).filter(|end| is_possible(*end))),
                 ..at
             };
             let [a, b] = logistic.coefficients();
@@ -309,13 +318,14 @@ impl ProbabilityCase {
                 let [p, low, high] = at(&logistic, value);
                 [value, p, low, high]
             });
+            let values = SHOWN.iter().filter_map(|p| logistic.value_at(*p));
+            let (values, others): (Vec<ValueAt>, Vec<ValueAt>) =
+                values.map(in_unit).partition(|at| is_possible(at.value));
             ProbabilityFit {
                 a,
                 b,
-                values: SHOWN
-                    .iter()
-                    .filter_map(|p| logistic.value_at(*p).map(in_unit))
-                    .collect(),
+                values,
+                at_none: others.iter().map(|at| at.probability).collect(),
                 depends: logistic.depends(),
                 is_separated: logistic.is_separated(),
                 curve: curve.collect(),

@@ -60,7 +60,8 @@ fn fractions_and_curve() {
     let fit = case.fit.as_ref().unwrap();
     assert_eq!([fit.a, fit.b], wanted.coefficients());
     assert_eq!(case.points[1].fitted.unwrap()[0], wanted.probability(2.0));
-    assert_eq!(fit.values[1], wanted.value_at(0.5).unwrap());
+    assert_eq!(fit.values[0], wanted.value_at(0.5).unwrap());
+    assert_eq!(fit.at_none, [0.1]);
     assert!(!fit.depends);
     assert!(table.notes.iter().any(|note| note.starts_with(
         "the runs do not show that the probability depends on bodies.bar.drop.height"
@@ -72,7 +73,7 @@ fn fractions_and_curve() {
         .find(|line| line.starts_with("probability"))
         .unwrap();
     assert!(
-        line.starts_with("probability  largest below 0.9 over bodies.bar.drop.height: 10 % at "),
+        line.starts_with("probability  largest below 0.9 over bodies.bar.drop.height: 10 % at no value above 0, 50 % at 2 m "),
         "{line}"
     );
     assert!(line.ends_with("; 6 of 12 runs"), "{line}");
@@ -91,6 +92,45 @@ fn fractions_and_curve() {
         "{csv}"
     );
     assert_eq!(probability_plots(&table, of).len(), 1);
+}
+
+/// A flat curve reaches far: heights of a fall end at 0, positions do not.
+#[test]
+fn a_height_is_never_negative() {
+    let seeds: Vec<u32> = (1..=20).collect();
+    let falls = STUDY.replace("[1, 2, 3, 4]", &format!("{seeds:?}"));
+    let position = falls
+        .replace("bodies.bar.drop.height", "walls.floor.plane.point")
+        .replace(
+            "[\"3 m\", \"1 m\", \"2 m\"]",
+            "[[0, 0, \"3 m\"], [0, 0, \"1 m\"], [0, 0, \"2 m\"]]",
+        );
+    let [height, position] =
+        [falls, position].map(|lines| table(&study(&lines), breaks([16, 10, 12])));
+    let [of_height, of_position] = [&height, &position].map(of);
+    let [height_fit, position_fit] =
+        [of_height, of_position].map(|of| of.cases[0].fit.as_ref().unwrap());
+    assert_eq!(height_fit.a, position_fit.a);
+    let [ten, fifty, ninety] = &position_fit.values[..] else {
+        panic!("{:?}", position_fit.values)
+    };
+    assert!(ten.value < 0.0 && fifty.value > 0.0);
+    assert!(fifty.between[0].unwrap_or(f64::NEG_INFINITY) < 0.0 && fifty.between[1].is_some());
+    assert_eq!(height_fit.at_none, [0.1]);
+    assert_eq!(position_fit.at_none, [0.0; 0]);
+    assert_eq!(height_fit.values[0].between, [None, fifty.between[1]]);
+    assert_eq!(height_fit.values[1].value, ninety.value);
+    let words = of_height.in_words(&of_height.cases[0], "largest");
+    assert!(
+        words.contains("height: 10 % at no value above 0, 50 % at "),
+        "{words}"
+    );
+    assert!(!words.contains('-'), "{words}");
+    let csv = probability_fit_csv(&height, of_height);
+    let cells: Vec<&str> = csv.lines().nth(1).unwrap().split(',').collect();
+    // At 10 % with both ends, and the lower end at 50 %.
+    assert_eq!([cells[4], cells[5], cells[6], cells[8]], [""; 4]);
+    assert!(cells[7].parse::<f64>().unwrap() > 0.0);
 }
 
 #[test]

@@ -30,6 +30,7 @@ def run(
     threads: int | None = None,
     resume: bool = False,
     force: bool = False,
+    keep: str = "all",
     force_step: bool = False,
     progress: bool | Progress = False,
     **tables: Value,
@@ -40,6 +41,9 @@ def run(
     `[output]` of the scene, else the scene's name with -out in the working directory. A folder that
     holds results is refused unless `force` (they are replaced) or `resume` (the run goes on from
     its checkpoint).
+
+    `keep="tables"` removes frames, pictures, plots and checkpoint at the end of the run; summary,
+    tables, page and scene stay.
 
     `set` changes values of the scene, as `--set` does: `{"run.end_time": "0.2 s"}`. Tables may be
     keyword arguments: `run={"end_time": "0.2 s"}`, `bonds={"cake": {"young_modulus": "20 MPa"}}`
@@ -59,7 +63,7 @@ def run(
     changes = overrides(set, tables)
     with arguments_of_python():
         folder = os.fspath(out) if out is not None else _crumble.results_folder(scene, changes)
-    arguments = [f"--output={os.fspath(folder)}", "--quiet"]
+    arguments = [f"--output={os.fspath(folder)}", f"--keep={keep}", "--quiet"]
     for given, name in [(resume, "--resume"), (force, "--force")]:
         if given:
             arguments.append(name)

@@ -1,7 +1,7 @@
 //! Range of validity of the bond and contact laws, and warnings before a run that a scene will
 //! exceed it.
 
-use dem_io::units::{show_length, significant};
+use dem_io::units::{show_length, show_quantity, significant};
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -74,9 +74,9 @@ pub fn foreseen(
     );
     for body in assemblies(state, bodies) {
         let of_bonds = format!(
-            "bonds of '{}', of a Young's modulus of {} Pa,",
+            "bonds of '{}', of a Young's modulus of {},",
             body.name,
-            significant(body.modulus_pa, 3)
+            show_quantity(body.modulus_pa, "Pa")
         );
         let wave_m_s = (body.modulus_pa / body.density_kg_m3).sqrt();
         if let Some(speed_m_s) = impact_speed_m_s

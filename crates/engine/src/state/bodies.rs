@@ -10,6 +10,8 @@ use super::events::{NewCluster, REMOVED, Renumbering};
 pub struct PlacedBody {
     /// Its name in the scene.
     pub name: String,
+    /// The number of its clump among the clusters. None: it was there from the start.
+    pub came_as: Option<u32>,
     /// First of its particles in the state.
     pub first_particle: usize,
     /// For each particle of the body's file, in order: its number in the state, or `REMOVED`.
@@ -36,6 +38,7 @@ impl PlacedBody {
         }
         Self {
             name: template.body.clone(),
+            came_as: Some(created.clump.cluster),
             first_particle: created.first_particle,
             particles,
             first_bond: created.first_bond,
@@ -80,21 +83,32 @@ pub fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u3
     })
 }
 
-/// Human-readable name of a particle of the state, by its number in the body's file.
+/// Human-readable name of a particle of the state, by its number in the body's file. Several bodies
+/// of one name are told apart by the fragments as which they came.
 pub fn called(bodies: &[PlacedBody], clumps: &Clumps, particle: u32) -> String {
     let of_bodies = bodies.iter().find_map(|body| {
         let number = body.number_of(particle)?;
-        Some((number, &body.name))
+        Some((number, &body.name, body.came_as))
     });
     let of_clumps = || {
         clumps.all.iter().find_map(|clump| {
             let template = clumps.template(clump);
             let own = particle.checked_sub(clump.first)?;
             let sphere = *template.outer.get(own as usize)?;
-            Some((template.file_number[sphere as usize], &template.body))
+            let number = template.file_number[sphere as usize];
+            Some((number, &template.body, Some(clump.cluster)))
         })
     };
-    let found = of_bodies.or_else(of_clumps);
-    let found = found.map(|(number, body)| format!("particle {number} of the body '{body}'"));
-    found.unwrap_or_else(|| format!("particle {particle}"))
+    let Some((number, name, came_as)) = of_bodies.or_else(of_clumps) else {
+        return format!("particle {particle}");
+    };
+    let names = bodies.iter().map(|body| &body.name);
+    let of_clumps = clumps.all.iter().map(|clump| &clumps.template(clump).body);
+    let is_single = names.chain(of_clumps).filter(|one| *one == name).count() == 1;
+    match came_as.filter(|_| !is_single) {
+        Some(fragment) => {
+            format!("particle {number} of the body '{name}' that came as fragment {fragment}")
+        }
+        None => format!("particle {number} of the body '{name}'"),
+    }
 }

@@ -181,10 +181,10 @@ impl TestResult {
             say(
                 "first bond",
                 format!(
-                    "at {}, crosshead travel {}, in {} at [{place}] mm",
+                    "at {}, crosshead travel {}, {} at [{place}] mm",
                     show_quantity(first.force_n, "N"),
                     show_quantity(first.travel_m, "m"),
-                    first.cause.name().replace('_', " "),
+                    first.cause.phrase(),
                 ),
             );
         }

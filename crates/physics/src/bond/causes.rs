@@ -38,14 +38,20 @@ impl CauseCounts {
     pub fn named(&self) -> [(&'static str, u64); COUNT] {
         Cause::ALL.map(|cause| (cause.name(), self.of(cause)))
     }
+
+    /// The counts that are not 0, with how bonds fail: "in tension".
+    pub fn phrased(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        let all = Cause::ALL.map(|cause| (cause.phrase(), self.of(cause)));
+        all.into_iter().filter(|(_, count)| *count > 0)
+    }
 }
 
 impl fmt::Display for CauseCounts {
     /// The counts that are not 0: `23 in tension, 2 in shear`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let causes = Cause::ALL.into_iter().filter(|cause| self.of(*cause) > 0);
-        let counts: Vec<String> = causes
-            .map(|cause| format!("{} {}", self.of(cause), cause.phrase()))
+        let counts: Vec<String> = self
+            .phrased()
+            .map(|(how, count)| format!("{count} {how}"))
             .collect();
         f.write_str(&counts.join(", "))
     }

@@ -31,7 +31,10 @@ pub(crate) fn add_inputs(page: &mut Page, summary: &Summary, folder: &Folder) {
     }
     let values = inputs.scene.iter();
     let values = values.map(|(key, value)| format!("{key} = {value}\n"));
-    page.details("All values, defaults included", &values.collect::<String>());
+    let hashes = inputs.bodies.iter();
+    let hashes = hashes.map(|(name, body)| format!("hash of the body {name}: {}\n", body.hash));
+    let all: String = values.chain(hashes).collect();
+    page.details("All values, defaults included", &all);
 }
 
 fn add_bodies(page: &mut Page, summary: &Summary) {
@@ -48,7 +51,6 @@ fn add_bodies(page: &mut Page, summary: &Summary) {
             body.particles.to_string(),
             body.bonds.to_string(),
             mass_kg.map_or(String::new(), |mass_kg| show_quantity(mass_kg, "kg")),
-            body.hash.clone(),
         ]
         .into()
     };
@@ -58,7 +60,6 @@ fn add_bodies(page: &mut Page, summary: &Summary) {
         Column::number("particles"),
         Column::number("bonds"),
         Column::number("mass"),
-        Column::text("hash"),
     ];
     page.table(&Table {
         columns: columns.to_vec(),

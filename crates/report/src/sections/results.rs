@@ -101,6 +101,7 @@ pub(crate) fn add_results(page: &mut Page, summary: &Summary, folder: &Folder) {
     if let Some(table) = distribution.as_deref().and_then(passing) {
         page.paragraph("Mass that passes a sieve, inside and discharged (distribution.csv):");
         page.table(&table);
+        explain_mark(page, &table);
     }
 }
 
@@ -110,19 +111,20 @@ fn add_walls(page: &mut Page, summary: &Summary) {
         return;
     }
     let mut columns = vec![Column::text("moving wall")];
-    columns.extend(["stroke", "work", "mean power"].map(Column::number));
+    columns.extend(["work", "mean power"].map(Column::number));
+    // Belts have none.
+    let has_strokes = summary.walls.values().any(|wall| wall.stroke_m.is_some());
+    if has_strokes {
+        columns.push(Column::number("stroke"));
+    }
     let row = |(name, wall): (&String, &WallSummary)| {
-        let stroke = wall
-            .stroke_m
-            .map_or(String::new(), |m| show_quantity(m, "m"));
-        let work = show_quantity(wall.work_j, "J");
-        vec![
+        let mut cells = vec![
             name.clone(),
-            stroke,
-            work,
+            show_quantity(wall.work_j, "J"),
             show_quantity(wall.mean_power_w, "W"),
-        ]
-        .into()
+        ];
+        cells.extend(wall.stroke_m.map(|stroke_m| show_quantity(stroke_m, "m")));
+        cells.into()
     };
     let rows = summary.walls.iter().map(row).collect();
     page.table(&Table { columns, rows });
@@ -149,14 +151,26 @@ fn add_sizes(page: &mut Page, sizes: &Sizes) {
         return;
     }
     let mut columns = vec![Column::text("fragments")];
-    columns.extend(["mass", "d10", "d50", "d80", "t10"].map(Column::number));
-    page.table(&Table { columns, rows });
+    columns.extend(["d50", "d80", "d10", "t10", "mass"].map(Column::number));
+    let table = Table { columns, rows };
+    page.table(&table);
+    explain_mark(page, &table);
+}
+
+/// The mark of sizes that the spheres decide, and not the material.
+const UNRESOLVED: &str = "*";
+
+/// What the mark means, if it is in this table.
+fn explain_mark(page: &mut Page, table: &Table) {
+    let mut cells = table.rows.iter().flat_map(|row| &row.cells);
+    if cells.any(|cell| cell.ends_with(UNRESOLVED)) {
+        page.small("* unresolved: at this size the spheres decide, not the material.");
+    }
 }
 
 fn size_cells(name: String, found: &SizeSummary) -> Vec<String> {
-    // Below some diameters of the spheres they decide, and not the material.
     let marked = |cell: String, is_unresolved: bool| match is_unresolved {
-        true => format!("{cell} (unresolved)"),
+        true => cell + UNRESOLVED,
         false => cell,
     };
     let length = |size_m: f64| show_quantity(size_m, "m");
@@ -164,11 +178,11 @@ fn size_cells(name: String, found: &SizeSummary) -> Vec<String> {
     let t10 = found.t10.map_or("not resolved".to_owned(), percent);
     vec![
         name,
-        show_quantity(found.mass_kg, "kg"),
-        marked(length(found.d10_m), is.d10),
         marked(length(found.d50_m), is.d50),
         marked(length(found.d80_m), is.d80),
+        marked(length(found.d10_m), is.d10),
         marked(t10, is.t10),
+        show_quantity(found.mass_kg, "kg"),
     ]
 }
 
@@ -202,7 +216,7 @@ fn passing(csv: &str) -> Option<Table> {
             .and_then(|at| cells.get(at))
             .is_some_and(|is| *is == "0");
         let fraction = match is_unresolved {
-            true => format!("{} (unresolved)", percent(fraction)),
+            true => percent(fraction) + UNRESOLVED,
             false => percent(fraction),
         };
         match sieves.iter_mut().find(|(known_m, _)| *known_m == sieve_m) {
@@ -253,11 +267,8 @@ fn add_measures(page: &mut Page, summary: &Summary) {
 fn facts(summary: &Summary) -> Vec<[String; 2]> {
     let mut facts = vec![["broken bonds".to_owned(), summary.broken_bonds.to_string()]];
     let mut add = |name: &str, value: String| facts.push([name.to_owned(), value]);
-    let mut causes = summary.broken_by_cause.named();
-    causes.sort_unstable();
-    for (cause, count) in causes.into_iter().filter(|(_, count)| *count > 0) {
-        let name = format!("broken by {}", cause.replace('_', " "));
-        add(&name, count.to_string());
+    for (how, count) in summary.broken_by_cause.phrased() {
+        add(&format!("broken {how}"), count.to_string());
     }
     let population = summary.population.as_ref();
     if let Some(fragments) = &summary.fragments {
@@ -265,8 +276,19 @@ fn facts(summary: &Summary) -> Vec<[String; 2]> {
         if population.is_some_and(|all| all.discharged > 0) {
             add("fragments inside at the end", fragments.inside.to_string());
         }
-        let largest = percent(fragments.mass_fraction_of_largest);
-        add("largest fragment, share of the mass of all", largest);
+        // A measure of the scene may be the same.
+        let largest = fragments.mass_fraction_of_largest;
+        let is_largest = |measure: &Measured| {
+            let key = format!("measures.{}.quantity", measure.name);
+            let asked = (key, "mass_fraction_of_largest".to_owned());
+            measure.value == largest && summary.inputs.scene.contains(&asked)
+        };
+        if !summary.measures.iter().any(is_largest) {
+            add(
+                "largest fragment, share of the mass of all",
+                percent(largest),
+            );
+        }
     }
     if let Some(population) = population {
         add_population(population, &mut add);

@@ -17,7 +17,7 @@ const STEPS: f64 = 16_777_215.0;
 const RADIUS_STEPS: i32 = 65_535;
 /// Fraction of the spheres that the first view leaves out on each side, so that a few that fly away
 /// do not shrink the rest.
-const ASIDE: f64 = 0.03;
+const ASIDE: f64 = 0.01;
 
 /// Extents and largest values of all frames.
 #[derive(Debug, Clone, Default)]

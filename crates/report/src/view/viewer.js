@@ -310,7 +310,7 @@ const camera = {};
 function reset() {
   const [fx, fy, fz] = head.from;
   camera.target = [...head.focus_m];
-  camera.distance = 2.8 * head.reach_m;
+  camera.distance = 3 * head.reach_m;
   camera.turn = Math.atan2(fy, fx);
   camera.rise = Math.atan2(fz, Math.hypot(fx, fy));
 }

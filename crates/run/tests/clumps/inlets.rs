@@ -3,6 +3,7 @@
 
 use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
+use dem_engine::state::bodies::called;
 use dem_engine::state::clumps::Clump;
 use dem_engine::state::events::{PopulationEvent, TopologyChange};
 use dem_engine::step::{drift, exchange, interact, step};
@@ -518,4 +519,35 @@ fn what_an_inlet_remembers_of_its_surroundings_changes_nothing() {
     assert!(keeps.time_s > (0.06 + 0.003 * 39.0) / 6.0);
     assert!(same(&keeps, &looks));
     assert!(2 * kept > tries && kept < tries, "{kept} of {tries}");
+}
+
+/// A single body of a name needs no more than that.
+#[test]
+fn bodies_of_one_name_are_told_apart_in_messages() {
+    let text = format!("{BALL}{}{WIDE}", lump("lump", "start_as = \"clump\""));
+    for count in [1, 2] {
+        let called_all = |name: &str| -> Vec<String> {
+            let inlet = format!("bodies = [\"{name}\"]\nrate = 500\ncount = {count}\n");
+            let mut state = fed(&text, &inlet);
+            let mut bodies = Vec::new();
+            for _ in 0..100 {
+                go(&mut state, &mut bodies);
+            }
+            let firsts = state.clumps.all.iter().map(|clump| clump.first);
+            let firsts = firsts.chain(bodies.iter().map(|body| body.particles[0]));
+            let called = firsts.map(|first| called(&bodies, &state.clumps, first));
+            called.collect()
+        };
+        for name in ["ball", "lump"] {
+            let found = called_all(name);
+            let wanted = format!("particle 0 of the body '{name}'");
+            let wanted: Vec<String> = match count {
+                1 => vec![wanted],
+                _ => [0, 1]
+                    .map(|fragment| format!("{wanted} that came as fragment {fragment}"))
+                    .to_vec(),
+            };
+            assert_eq!(found, wanted);
+        }
+    }
 }

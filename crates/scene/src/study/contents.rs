@@ -160,6 +160,8 @@ pub struct Probability {
     /// `spacing`: true if the curve is one over the logarithm of the parameter, whose values are
     /// above 0.
     pub is_log: bool,
+    /// True if a scene refuses values of the parameter below 0, such as heights of a fall.
+    pub is_never_negative: bool,
     /// Its place in the study.
     pub place: String,
 }

@@ -5,6 +5,8 @@ use super::find::measure_named;
 use super::keys::{PROBABILITY, SPACINGS};
 use super::measures::axis_named;
 use crate::field::Field;
+use crate::root::SCENE;
+use crate::schema::Key;
 use crate::table::Table;
 use crate::tree::Value;
 use dem_io::diagnostic::Result;
@@ -48,6 +50,9 @@ pub(super) fn read(
         is_below: limit == "below",
         over,
         is_log,
+        is_never_negative: SCENE
+            .key_at(&axes[over].name)
+            .is_some_and(Key::is_never_negative),
         place: table.document.place(table.origin),
     })
 }

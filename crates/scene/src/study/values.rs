@@ -48,11 +48,11 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
         }
     };
     let mut values = Vec::new();
-    let only = only_component(&nodes);
+    let only = only_difference(&nodes);
     for item in &nodes {
         values.push(AxisValue {
             settings: vec![setting(path, item, folder)?],
-            ..of_node(item.node, only)
+            ..of_node(item.node, only.as_ref())
         });
     }
     tell_apart(&mut values, &nodes);
@@ -77,8 +77,8 @@ pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<A
         let list = table.field(path, node);
         let items = list.items()?;
         if values.is_empty() {
-            let only = only_component(&items);
-            let nodes = items.iter().map(|item| of_node(item.node, only));
+            let only = only_difference(&items);
+            let nodes = items.iter().map(|item| of_node(item.node, only.as_ref()));
             values = nodes.collect();
             tell_apart(&mut values, &items);
         } else if items.len() != values.len() {
@@ -140,9 +140,17 @@ pub(super) fn point(path: &str, number: f64, unit: &str, place: &str) -> AxisVal
     }
 }
 
-/// A value without its settings. A vector is shown by its component `only`.
-fn of_node(node: &Node, only: Option<usize>) -> AxisValue {
-    let shown = component(node, only);
+/// The part in which the values of an axis differ.
+enum Part {
+    /// A component of vectors.
+    Component(usize),
+    /// A key of inline tables.
+    Key(String),
+}
+
+/// A value without its settings, shown by its part `only`.
+fn of_node(node: &Node, only: Option<&Part>) -> AxisValue {
+    let shown = only.and_then(|only| part(node, only)).unwrap_or(node);
     AxisValue {
         label: label(shown),
         settings: Vec::new(),
@@ -162,8 +170,14 @@ fn tell_apart(values: &mut [AxisValue], items: &[Field<'_>]) {
     }
 }
 
-/// The component in which vectors differ, if all others are 0 in all of them: 2 for `[0, 0, "1
-/// m/s"]`.
+/// The one part in which values differ, if all else is equal in all of them: the angle of rotations
+/// about one axis, or the component of vectors whose others are 0.
+fn only_difference(values: &[Field<'_>]) -> Option<Part> {
+    let component = only_component(values).map(Part::Component);
+    component.or_else(|| only_key(values).map(Part::Key))
+}
+
+/// 2 for `[0, 0, "1 m/s"]`.
 fn only_component(values: &[Field<'_>]) -> Option<usize> {
     let is_zero = |node: &Node| split(node).is_some_and(|(number, _)| number == 0.0);
     let fits = |at: usize| {
@@ -178,11 +192,35 @@ fn only_component(values: &[Field<'_>]) -> Option<usize> {
     (0..3).find(|at| fits(*at))
 }
 
-/// The component `only` of a vector; another value itself.
-fn component(node: &Node, only: Option<usize>) -> &Node {
-    match (&node.value, only) {
-        (Value::List(items), Some(at)) => items.get(at).unwrap_or(node),
-        _ => node,
+/// `angle` for `{ axis = [1, 0, 0], angle = "24 deg" }`.
+fn only_key(values: &[Field<'_>]) -> Option<String> {
+    let tables = values.iter().map(|value| match &value.node.value {
+        Value::Table(entries) => Some(entries),
+        _ => None,
+    });
+    let tables: Vec<_> = tables.collect::<Option<_>>()?;
+    let (first, others) = tables.split_first()?;
+    let is_equal = |key: &str, node: &Node| {
+        let same = |(other, value): &(String, Node)| other == key && toml(value) == toml(node);
+        others.iter().all(|table| table.iter().any(same))
+    };
+    let mut differ = first.iter().filter(|(key, node)| !is_equal(key, node));
+    let (key, _) = differ.next()?;
+    let all_have = others
+        .iter()
+        .all(|table| table.len() == first.len() && table.iter().any(|(other, _)| other == key));
+    (all_have && differ.next().is_none()).then(|| key.clone())
+}
+
+/// A part of a value.
+fn part<'a>(node: &'a Node, part: &Part) -> Option<&'a Node> {
+    match (&node.value, part) {
+        (Value::List(items), Part::Component(at)) => items.get(*at),
+        (Value::Table(entries), Part::Key(key)) => {
+            let entry = entries.iter().find(|(other, _)| other == key);
+            entry.map(|(_, node)| node)
+        }
+        _ => None,
     }
 }
 

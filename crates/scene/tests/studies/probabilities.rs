@@ -23,6 +23,7 @@ fn a_probability_is_read() {
         is_below: false,
         over: 0,
         is_log: false,
+        is_never_negative: true,
         place: "study.toml:3".to_owned(),
     };
     assert_eq!(found.probability, Some(wanted));
