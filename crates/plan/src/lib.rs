@@ -163,9 +163,8 @@ pub fn plan(
     state.supports = supports(scene, &groups)?;
     start(scene, &groups, &bodies, &mut state)?;
     state.loads = loads(scene, &groups, &state.supports)?;
-    let mut notes = scene.notes.clone();
-    notes.extend(of_specimens);
-    notes.extend(masses::notes(scene, &masses));
+    let of_masses = masses::notes(scene, &masses);
+    let mut notes = [scene.notes.clone(), of_specimens, of_masses].concat();
     state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
     state.population.by_daughters = vec![0; templates.len()];

@@ -8,13 +8,14 @@ use serde::{Deserialize, Serialize};
 use super::breaks::Breaks;
 use super::rigid_hits::RigidHits;
 use super::taken_in::Taken;
-use dem_engine::check::validity::{LARGEST_INDENTATION, LARGEST_STRAIN, indentation};
+use dem_engine::check::validity::{LARGEST_INDENTATION, LARGEST_STRAIN};
 use dem_engine::stages::bonds::forces::{
     edge_strain, most_strained, most_strained_edge, most_yielded,
 };
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
 use dem_engine::state::events::{PopulationEvent, REMOVED, STARTS_BONDED};
+use dem_physics::contact::kinematics::indentation;
 
 /// The largest value of a quantity, and where it occurred.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -6,7 +6,7 @@ mod targets;
 
 pub use confined::{Confinement, NormalStress};
 pub use dynamic::{Bars, Gauges, Weight};
-pub(super) use targets::conflicts;
+pub use targets::MeasuredReference;
 use targets::targets;
 
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ use super::table::Table;
 use super::wall::{Wall, WallMotion};
 use dem_io::diagnostic::Result;
 use dem_io::units::{AREA, LENGTH, STRESS, VELOCITY, show_quantity};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::paths::named_path;
 use dem_laboratory::{Dimensions, MeasuredMaterial, TestType, read_material};
@@ -177,13 +177,13 @@ pub struct Test {
     pub area_m2: Option<f64>,
 }
 
-/// A measured material and its file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeasuredReference {
-    /// The file.
-    pub file: PathBuf,
-    /// Its content.
-    pub material: MeasuredMaterial,
+/// What a test says twice: targets of its own beside those of its measured material.
+pub(super) fn conflicts(field: &Field<'_>, test: Option<&Test>) -> Result<Vec<String>> {
+    let table = Table::of(field, &TEST)?;
+    let measured = test.and_then(|test| Some((test.kind, test.measured.as_ref()?)));
+    measured.map_or(Ok(Vec::new()), |(kind, measured)| {
+        targets::conflicts(&table, kind, measured)
+    })
 }
 
 /// The names that a test can use.

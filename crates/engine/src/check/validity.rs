@@ -14,16 +14,9 @@ use crate::state::events::REMOVED;
 /// Strain at the edge of a bond above which linear elasticity is doubtful: its error is of the same
 /// order.
 pub const LARGEST_STRAIN: f64 = 0.1;
-/// [Indentation](indentation) above which the contact laws are doubtful: the radius of Hertz's
+/// [Indentation](dem_physics::contact::kinematics::indentation) above which the contact laws are doubtful: the radius of Hertz's
 /// contact, which should be small, is then 0.55 of the sphere's.
 pub const LARGEST_INDENTATION: f64 = 0.3;
-
-/// Depth to which an overlap, m, presses in the smaller of two spheres of these radii, m, over its
-/// radius: the square of the radius of Hertz's contact over that of the sphere. It is the whole
-/// overlap at a wall (an infinite radius), and half of it in each of two equal spheres.
-pub fn indentation(overlap_m: f64, small_radius_m: f64, large_radius_m: f64) -> f64 {
-    overlap_m / small_radius_m / (1.0 + small_radius_m / large_radius_m)
-}
 
 /// Warning that bonds are strained beyond the validity of their law, `where_`. None: they are not.
 pub fn strain_warning(largest: f64, where_: &str) -> Option<String> {

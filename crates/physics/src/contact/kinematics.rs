@@ -229,3 +229,10 @@ fn per_rolling_inertia<T: Number>(ball: &ContactSphere<T>) -> T {
     let sum = per_mass + per_inertia * ball.radius_m * ball.radius_m;
     sum.if_positive(per_mass * per_inertia / sum)
 }
+
+/// Depth to which an overlap, m, presses in the smaller of two spheres of these radii, m, over its
+/// radius: the square of the radius of Hertz's contact over that of the sphere. It is the whole
+/// overlap at a wall (an infinite radius), and half of it in each of two equal spheres.
+pub fn indentation(overlap_m: f64, small_radius_m: f64, large_radius_m: f64) -> f64 {
+    overlap_m / small_radius_m / (1.0 + small_radius_m / large_radius_m)
+}

@@ -2,12 +2,21 @@
 
 use dem_io::diagnostic::Result;
 use dem_io::units::show_quantity;
-use dem_laboratory::TestType;
+use dem_laboratory::{MeasuredMaterial, TestType};
+use std::path::PathBuf;
 
 use super::super::field::Field;
 use super::super::table::Table;
 use super::super::tree::Origin;
-use super::{MeasuredReference, TEST, Test};
+
+/// A measured material and its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredReference {
+    /// The file.
+    pub file: PathBuf,
+    /// Its content.
+    pub material: MeasuredMaterial,
+}
 
 /// A target: the value that the scene gives, and the one that was measured, Pa.
 pub(super) struct Target {
@@ -54,11 +63,11 @@ pub(super) fn targets(
 }
 
 /// What a test says twice: modulus or strength of its own beside those of its measured material.
-pub(in super::super) fn conflicts(field: &Field<'_>, test: Option<&Test>) -> Result<Vec<String>> {
-    let table = Table::of(field, &TEST)?;
-    let Some(measured) = test.and_then(|test| test.measured.as_ref()) else {
-        return Ok(Vec::new());
-    };
+pub(super) fn conflicts(
+    table: &Table<'_>,
+    kind: TestType,
+    measured: &MeasuredReference,
+) -> Result<Vec<String>> {
     let file = measured.file.display();
     let told = |target: Target| {
         let (given_pa, measured_pa) = (target.given_pa?, target.measured_pa?);
@@ -77,22 +86,25 @@ pub(in super::super) fn conflicts(field: &Field<'_>, test: Option<&Test>) -> Res
             )
         })
     };
-    let targets = targets(&table, Some(measured))?;
-    let without = modulus_not_measured(test, &targets);
+    let targets = targets(table, Some(measured))?;
+    let without = modulus_not_measured(kind, measured, &targets);
     Ok((targets.into_iter().filter_map(told))
         .chain(without)
         .collect())
 }
 
 /// What is said of a modulus beside a measured material that has none.
-fn modulus_not_measured(test: Option<&Test>, [modulus, _]: &[Target; 2]) -> Option<String> {
-    let test = test?;
-    let file = test.measured.as_ref()?.file.display();
+fn modulus_not_measured(
+    kind: TestType,
+    measured: &MeasuredReference,
+    [modulus, _]: &[Target; 2],
+) -> Option<String> {
+    let file = measured.file.display();
     let (given_pa, None) = (modulus.given_pa?, modulus.measured_pa) else {
         return None;
     };
     let given = show_quantity(given_pa, "Pa");
-    Some(match test.kind {
+    Some(match kind {
         TestType::BrazilianDisc => format!(
             "calibrations meet the stiffness of the measured curve ({file}), and test.young_modulus = {given} only with --modulus specimen"
         ),

@@ -1,11 +1,10 @@
 //! Contacts linearised at an impact of a speed.
 
 use super::{LEAST_OVERLAP, translation};
-use crate::check::validity::indentation;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
 use crate::state::clumps::Clump;
-use dem_physics::contact::kinematics::contact_kinematics;
+use dem_physics::contact::kinematics::{contact_kinematics, indentation};
 use dem_physics::contact::law::ContactKind;
 use dem_physics::number::Vec3;
 use nalgebra::Vector3;
