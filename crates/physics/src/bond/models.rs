@@ -8,3 +8,4 @@ pub mod pin;
 pub mod rojek;
 pub mod shear_coefficient;
 pub mod timoshenko;
+pub mod tube;

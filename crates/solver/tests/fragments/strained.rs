@@ -24,11 +24,12 @@ fn strengths() -> impl Iterator<Item = f64> {
 }
 
 /// Names and keys of kinds of bonds.
-const KINDS: [(&str, &str); 8] = [
+const KINDS: [(&str, &str); 9] = [
     ("timoshenko", "model = \"timoshenko\""),
     ("parallel", "model = \"parallel\""),
     ("rojek", "model = \"rojek\""),
     ("pin", "model = \"pin\""),
+    ("tube", "model = \"tube\", hollow = 0.3"),
     ("incremental", "formulation = \"incremental\""),
     ("plastic", PLASTIC),
     ("joint", JOINT),
