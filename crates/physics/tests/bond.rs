@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 
 /// Every bond model.
-pub(crate) const MODELS: [BondModel; 8] = [
+pub(crate) const MODELS: [BondModel; 7] = [
     BondModel::Parallel { kappa: None },
     BondModel::Pin { kappa: None },
     BondModel::Rojek { kappa: None },
@@ -24,7 +24,6 @@ pub(crate) const MODELS: [BondModel; 8] = [
     BondModel::Timoshenko,
     BondModel::ElasticSolid,
     BondModel::ShearCoefficient { alpha: 0.9 },
-    BondModel::Tube { hollow: 0.5 },
 ];
 
 /// Vectors in a cube of twice this edge.

@@ -62,13 +62,11 @@ table_schema! {
     /// Model of the bond: a beam; `pin`, which resists neither torsion nor bending; `rojek`, two
     /// segments in series, each as thick in proportion as its sphere; or `flat-joint`, whose
     /// section consists of elements that fail one by one.
-    new("model", Kind::Word(|| words_of(&models(None, 0.0, 0.0, 0.0)))).or_word("timoshenko");
+    new("model", Kind::Word(|| words_of(&models(None, 0.0, 0.0)))).or_word("timoshenko");
     /// Normal over shear stiffness of the models `parallel`, `pin`, `rojek` and `flat-joint`.
     number("stiffness_ratio").positive().otherwise("2 (1 + nu)");
     /// Shear coefficient of the section, for the model `shear-coefficient`.
     number("shear_coefficient").positive().or(0.9);
-    /// Inner over outer radius of the section, for the model `tube`.
-    number("hollow").within(Included(0.0), Excluded(1.0)).remedy("0 is a solid rod").or(0.5);
     /// Rings of elements in the section, for the model `flat-joint`.
     new("radial_elements", Kind::Whole { least: 1, most: Some(100), of: "" })
         .remedy("leave it out for 3")
@@ -208,12 +206,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
 }
 
 /// The models and their names.
-fn models(
-    kappa: Option<f64>,
-    alpha: f64,
-    hollow: f64,
-    moment_ratio: f64,
-) -> [(&'static str, BondModel); 9] {
+fn models(kappa: Option<f64>, alpha: f64, moment_ratio: f64) -> [(&'static str, BondModel); 8] {
     let flat_joint = BondModel::FlatJoint {
         kappa,
         moment_ratio,
@@ -226,16 +219,13 @@ fn models(
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
         ("shear-coefficient", BondModel::ShearCoefficient { alpha }),
-        ("tube", BondModel::Tube { hollow }),
         ("flat-joint", flat_joint),
     ]
 }
 
 /// Names of the models.
 pub fn bond_models() -> impl Iterator<Item = &'static str> {
-    models(None, 0.0, 0.0, 0.0)
-        .into_iter()
-        .map(|(name, _)| name)
+    models(None, 0.0, 0.0).into_iter().map(|(name, _)| name)
 }
 
 /// The model, and the elements of a flat joint.
@@ -244,13 +234,12 @@ fn model(table: &Table<'_>) -> Result<(BondModel, Option<FlatJointLaw>)> {
         table.read("stiffness_ratio")?,
         table.read("shear_coefficient")?,
     );
-    let hollow = table.read("hollow")?;
     let joint = FlatJointLaw {
         radial_elements: table.read("radial_elements")?,
         circumferential_elements: table.read("circumferential_elements")?,
         friction: table.read("joint_friction")?,
     };
-    let known = models(kappa, alpha, hollow, moment_ratio(&joint));
+    let known = models(kappa, alpha, moment_ratio(&joint));
     if let Some(field) = table.get("model").filter(|field| field.is("shen")) {
         let problem = "is \"shen\", the bond with concave ends of Shen et al. 2016, which is not available: the sources at hand do not give its formulas";
         return Err(field.fault(problem, "write another model, such as \"parallel\""));
@@ -274,7 +263,6 @@ fn model(table: &Table<'_>) -> Result<(BondModel, Option<FlatJointLaw>)> {
         ("radial_elements", "flat-joint", is_flat_joint),
         ("circumferential_elements", "flat-joint", is_flat_joint),
         ("joint_friction", "flat-joint", is_flat_joint),
-        ("hollow", "tube", matches!(model, BondModel::Tube { .. })),
         (
             "shear_coefficient",
             "shear-coefficient",
@@ -361,7 +349,7 @@ fn check_flat_joint(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
 }
 
 pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
-    let known = models(None, 0.0, 0.0, 0.0);
+    let known = models(None, 0.0, 0.0);
     let same =
         |other: &BondModel| std::mem::discriminant(other) == std::mem::discriminant(&kind.model);
     let name = known.iter().find(|(_, other)| same(other));
@@ -375,7 +363,6 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
             listing.value("stiffness_ratio", &stiffness_ratio);
         }
         BondModel::ShearCoefficient { alpha } => listing.value("shear_coefficient", &alpha),
-        BondModel::Tube { hollow } => listing.value("hollow", &hollow),
         BondModel::EulerBernoulli | BondModel::Timoshenko | BondModel::ElasticSolid => {}
     }
     if let Some(joint) = &kind.joint {

@@ -8,4 +8,3 @@ pub mod pin;
 pub mod rojek;
 pub mod shear_coefficient;
 pub mod timoshenko;
-pub mod tube;

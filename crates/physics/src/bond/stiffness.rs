@@ -9,7 +9,6 @@ use super::models::pin::Pin;
 use super::models::rojek::Rojek;
 use super::models::shear_coefficient::ShearCoefficient;
 use super::models::timoshenko::Timoshenko;
-use super::models::tube::Tube;
 pub use super::rod::{BondShape, Stiffness};
 use super::rod::{Rod, RodModel};
 
@@ -43,11 +42,6 @@ pub enum BondModel {
     ShearCoefficient {
         /// Shear coefficient, 0.9 for a circular section.
         alpha: f64,
-    },
-    /// Like the elastic solid bond, with a ring as section.
-    Tube {
-        /// Inner over outer radius.
-        hollow: f64,
     },
     /// Flat joint: see [`flat_joint`](super::flat_joint).
     FlatJoint {
@@ -85,7 +79,6 @@ pub fn stiffness(
             moment_ratio,
         }
         .stiffness(&rod),
-        BondModel::Tube { hollow } => Tube { hollow }.stiffness(&rod),
         BondModel::ShearCoefficient { alpha } => ShearCoefficient { alpha }.stiffness(&rod),
     }
 }

@@ -24,12 +24,11 @@ fn strengths() -> impl Iterator<Item = f64> {
 }
 
 /// Names and keys of kinds of bonds.
-const KINDS: [(&str, &str); 9] = [
+const KINDS: [(&str, &str); 8] = [
     ("timoshenko", "model = \"timoshenko\""),
     ("parallel", "model = \"parallel\""),
     ("rojek", "model = \"rojek\""),
     ("pin", "model = \"pin\""),
-    ("tube", "model = \"tube\", hollow = 0.3"),
     ("incremental", "formulation = \"incremental\""),
     ("plastic", PLASTIC),
     ("joint", JOINT),
