@@ -32,7 +32,6 @@ mod statics;
 mod stress;
 mod sweep;
 mod trial;
-mod units;
 
 use std::ffi::OsString;
 use std::sync::Arc;
@@ -107,7 +106,6 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt, tell: Tell<'_>) -> Resu
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt, tell),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
         Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
-        Some(Command::Units) => units::print_units(),
         Some(Command::Man) => print_man_page(Arguments::command()),
         None if arguments.run.scene.names_a_scene() => {
             in_pool(arguments.run.scene.threads, |threads| {

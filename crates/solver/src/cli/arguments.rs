@@ -202,8 +202,6 @@ pub(super) enum Command {
         /// Which shell
         shell: Shell,
     },
-    /// Print all units that scenes and options can have
-    Units,
     /// Print the man page
     Man,
 }
