@@ -31,6 +31,8 @@ pub const DISTRIBUTION: &str = "distribution.csv";
 pub const FLOW: &str = "flow.csv";
 /// The cells of mixtures.
 pub const MIXING: &str = "mixing.csv";
+/// Centres of mass of the bodies at the end.
+pub const CENTRES: &str = "centres.csv";
 /// What contacts have done to the patches of walls.
 pub const WALL_LOADS: &str = "wall_loads.csv";
 /// The same for ParaView.
@@ -56,7 +58,7 @@ pub const CHECKPOINT: &str = "checkpoint.dem";
 /// The data written at the end of a run, kept until all files are complete.
 pub const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 22] = [
+pub(super) const SINGLE_FILES: [&str; 23] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -66,6 +68,7 @@ pub(super) const SINGLE_FILES: [&str; 22] = [
     DISTRIBUTION,
     FLOW,
     MIXING,
+    CENTRES,
     WALL_LOADS,
     WALL_LOAD_CELLS,
     WALL_LOAD_INDEX,
