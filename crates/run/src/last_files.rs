@@ -36,11 +36,10 @@ type WriteTable = fn(&LastState<'_>) -> Result<Vec<PathBuf>>;
 
 /// All tables and plots of the last state: that of the checkpoint, half a step later, would change
 /// them.
-const TABLES: [WriteTable; 6] = [
+const TABLES: [WriteTable; 5] = [
     tables::fragments,
     tables::flow,
     tables::mixing,
-    tables::centres,
     wall_loads::wall_loads,
     strengthening_plot,
 ];

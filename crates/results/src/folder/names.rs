@@ -31,8 +31,6 @@ pub const DISTRIBUTION: &str = "distribution.csv";
 pub const FLOW: &str = "flow.csv";
 /// The cells of mixtures.
 pub const MIXING: &str = "mixing.csv";
-/// Centres of mass of the bodies at the end.
-pub const CENTRES: &str = "centres.csv";
 /// What contacts have done to the patches of walls.
 pub const WALL_LOADS: &str = "wall_loads.csv";
 /// The same for ParaView.
@@ -58,7 +56,7 @@ pub const CHECKPOINT: &str = "checkpoint.dem";
 /// The data written at the end of a run, kept until all files are complete.
 pub const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 23] = [
+pub(super) const SINGLE_FILES: [&str; 22] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -68,7 +66,6 @@ pub(super) const SINGLE_FILES: [&str; 23] = [
     DISTRIBUTION,
     FLOW,
     MIXING,
-    CENTRES,
     WALL_LOADS,
     WALL_LOAD_CELLS,
     WALL_LOAD_INDEX,

@@ -72,7 +72,6 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
         "distribution.csv",
         "flow.csv",
         "mixing.csv",
-        "centres.csv",
         "wall_loads.csv",
         "wall_loads.vtp",
         "summary.json",

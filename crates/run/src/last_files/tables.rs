@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use dem_io::Result;
-use dem_results::columns::{Column, write_table};
+use dem_results::columns::write_table;
 use dem_results::folder::names;
 use dem_results::{DistributionRow, FlowRow, MixingRow};
 
@@ -67,49 +67,5 @@ pub(super) fn mixing(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let rows = last.probes.iter().flat_map(of_probe);
     let path = last.folder.file(names::MIXING);
     write_table(&path, &MixingRow::COLUMNS, rows)?;
-    Ok(vec![path])
-}
-
-/// A body, and its centre of mass, m. Length 3.
-type Centre = (String, [f64; 3]);
-
-const CENTRE: [Column<Centre>; 4] = [
-    ("body", |(name, _)| {
-        format!("\"{}\"", name.replace('"', "\"\""))
-    }),
-    ("x_m", |(_, [x, _, _])| x.to_string()),
-    ("y_m", |(_, [_, y, _])| y.to_string()),
-    ("z_m", |(_, [_, _, z])| z.to_string()),
-];
-
-/// Centres of mass of the bodies with all their pieces.
-pub(super) fn centres(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
-    let state = last.state;
-    let Some(clusters) = &state.clusters else {
-        return Ok(Vec::new());
-    };
-    let p = &state.particles;
-    let mut sums = vec![(0.0, [0.0; 3]); state.model.bodies.len()];
-    let mut add = |cluster: u32, mass_kg: f64, place_m: [f64; 3]| {
-        let (total_kg, moment) = &mut sums[clusters.history[cluster as usize].body as usize];
-        *total_kg += mass_kg;
-        for (sum, x) in moment.iter_mut().zip(place_m) {
-            *sum += mass_kg * x;
-        }
-    };
-    for i in 0..p.free {
-        let mass_kg = 1.0 / p.motions[i].inverse_mass;
-        add(clusters.of_particle[i], mass_kg, p.poses[i].place().into());
-    }
-    for clump in &state.clumps.all {
-        let mass_kg = state.clumps.template(clump).mass_kg;
-        add(clump.cluster, mass_kg, clump.place_m);
-    }
-    let named = state.model.bodies.iter().zip(sums);
-    let rows = named
-        .filter(|(_, (mass_kg, _))| *mass_kg > 0.0)
-        .map(|(body, (mass_kg, moment))| (body.name.clone(), moment.map(|m| m / mass_kg)));
-    let path = last.folder.file(names::CENTRES);
-    write_table(&path, &CENTRE, rows)?;
     Ok(vec![path])
 }

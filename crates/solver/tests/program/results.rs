@@ -21,7 +21,6 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
         [
             ".ended.json",
             ".lock",
-            "centres.csv",
             "checkpoint.dem",
             "distribution.csv",
             "events.csv",
