@@ -105,8 +105,6 @@ pub static QUANTITIES: &[Quantity] = &[
         &["velocity_x", "velocity_y", "velocity_z", "velocity"],
         &VELOCITY,
     ),
-    // Of the centre of the fastest particle or clump.
-    of_group(&["largest_speed"], &VELOCITY),
     // Rotation vector since the start, mean by mass.
     of_group(&["rotation_x", "rotation_y", "rotation_z"], &ANGLE),
     // Of the rigid body with the same inertia and angular momentum.

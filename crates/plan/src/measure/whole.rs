@@ -37,9 +37,6 @@ pub(super) const MEASUREMENTS: &[Measurement] = &[
     of_motion("velocity_x", |probe, view| {
         probe.part(&velocity(&probe.members, view.state, view.motions()))
     }),
-    of_motion("largest_speed", |probe, view| {
-        largest_speed_m_s(&probe.members, view.state, view.motions())
-    }),
     Measurement {
         counts_from_start: true,
         ..of_motion("rotation_x", |probe, view| {
@@ -100,16 +97,6 @@ fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64>
     let clumps = clumps.map(|(clump, template)| (template.mass_kg, clump.velocity_m_s.into()));
     let parts: Vec<_> = free.chain(clumps).collect();
     mean(&parts)
-}
-
-/// Speed of the centre of the fastest particle or clump, m/s.
-fn largest_speed_m_s(members: &Members, state: &State, motions: &Motions) -> f64 {
-    let free = members.free(state);
-    let free = free.map(|i| motions.particles[i].velocity_m_s);
-    let clumps = members.clumps(state, &motions.clumps);
-    let all = free.chain(clumps.map(|(clump, _)| clump.velocity_m_s));
-    all.map(|velocity| Vector3::from(velocity).norm())
-        .fold(0.0, f64::max)
 }
 
 fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
