@@ -58,8 +58,6 @@ keyed_struct! {
             .otherwise("a thousandth of the run");
         /// Time between pictures.
         pictures_s: Option<f64> = quantity("pictures", &TIME).positive();
-        /// The film of the pictures and the film strip are left out.
-        skip_film: bool = flag("skip_film", false);
         /// Camera of the pictures.
         view_from: Option<[f64; 3]> = table("view", &VIEW).otherwise("front, right and above");
         /// Quantity that colours the particles of pictures; of a quantity of bonds, a particle has
@@ -100,7 +98,6 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
         frames_s: table.read("frames")?,
         series_s: table.read("series")?,
         pictures_s: table.read("pictures")?,
-        skip_film: table.read("skip_film")?,
         view_from: table.read_by("view", |field| Table::of(&field, &VIEW)?.read("from"))?,
         colour_by: table.read("colour_by")?,
         sieves_m: table
@@ -135,7 +132,6 @@ pub(super) fn list(output: &Output, listing: &mut Listing) {
     listing.value("frames", &output.frames_s);
     listing.value("series", &output.series_s);
     listing.value("pictures", &output.pictures_s);
-    listing.value("skip_film", &output.skip_film);
     match &output.view_from {
         Some(from) => listing.table("view", &VIEW, |listing| listing.value("from", from)),
         None => listing.text("view.from", listing.usual("view")),

@@ -64,10 +64,9 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     })))
 }
 
-/// Number of the pictures at a checkpoint for the film. None: the scene asks for none.
+/// Number of the pictures at a checkpoint. None: the scene asks for none.
 pub(crate) fn taken_until(scene: &Scene, progress: &Progress) -> Result<Option<usize>> {
-    let output = scene.output.as_ref().filter(|output| !output.skip_film);
-    let every_s = output.and_then(|output| output.pictures_s);
+    let every_s = scene.output.as_ref().and_then(|output| output.pictures_s);
     let count = every_s.map(|_| position(progress, NAME).map(|taken: Taken| taken.count));
     count.transpose()
 }
