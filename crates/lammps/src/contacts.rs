@@ -112,14 +112,6 @@ pub(super) fn law_in_words(
             );
             return None;
         }
-        Law::Power(_) => {
-            refusals.add(
-                format!("contacts.{names}.law"),
-                "it has no law of this power",
-                "write law = \"hertz-mindlin\" or \"linear\"",
-            );
-            return None;
-        }
         Law::Linear(law) => {
             let (n, t) = (law.normal_n_m, law.tangential_n_m);
             let ratio = (t / n).sqrt() * tangential_ratio(&law.parameters);

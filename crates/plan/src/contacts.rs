@@ -17,9 +17,8 @@ use dem_physics::contact::law::Law;
 use dem_physics::contact::law::dmt::DerjaguinMullerToporov;
 use dem_physics::contact::law::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::law::linear::Linear;
-use dem_physics::contact::law::power::Power;
 use dem_physics::contact::liquid_bridge::LiquidBridge;
-use dem_physics::contact::pair_parameters::{Elastic, PairInput, PairParameters};
+use dem_physics::contact::pair_parameters::{Elastic, PairInput};
 
 /// Verlet skin as a fraction of the largest radius, unless the scene sets it or objects are fast;
 /// and the largest such fraction.
@@ -136,10 +135,6 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
                 normal_n_m,
                 tangential_stiffness_ratio: tangential_ratio,
             } => Law::Linear(Linear::new(normal_n_m, tangential_ratio, &pair_input)),
-            ContactLaw::Power { modulus_pa } => Law::Power(Power {
-                modulus_pa,
-                parameters: PairParameters::new(&pair_input),
-            }),
         },
         bridge: contact.liquid_bridge.map(|bridge| LiquidBridge {
             surface_tension_n_m: bridge.surface_tension_n_m,

@@ -16,7 +16,7 @@ use super::material::Material;
 use super::schema::{Kind, table_schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::{ENERGY_PER_AREA, STIFFNESS, STRESS};
+use dem_io::units::{ENERGY_PER_AREA, STIFFNESS};
 use dem_physics::contact::law::Rolling;
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 
@@ -28,14 +28,12 @@ enum LawName {
     HertzMindlin,
     Dmt,
     Linear,
-    Power,
 }
 
-const LAWS: [(&str, LawName); 4] = [
+const LAWS: [(&str, LawName); 3] = [
     ("hertz-mindlin", LawName::HertzMindlin),
     ("dmt", LawName::Dmt),
     ("linear", LawName::Linear),
-    ("power", LawName::Power),
 ];
 
 /// Rolling laws; true with a spring.
@@ -45,8 +43,8 @@ table_schema! {
     /// Contact law of two materials. Their names may be in either order and may contain a hyphen.
     pub(super) static CONTACT = "[contacts.NAME-NAME]";
 
-    /// Hertz-Mindlin, the same with the adhesion of Derjaguin, Muller and Toporov, a linear spring
-    /// and dashpot, or a force that grows with the power 1.25 of the overlap.
+    /// Hertz-Mindlin, the same with the adhesion of Derjaguin, Muller and Toporov, or a linear
+    /// spring and dashpot.
     new("law", Kind::Word(|| words_of(&LAWS))).or_word("hertz-mindlin");
     /// Work that separates two surfaces, of the law `dmt`, which requires it: the pull-off force is
     /// 2 pi times it and the effective radius. Twice the surface energy for a material with itself.
@@ -58,9 +56,6 @@ table_schema! {
         .within(Excluded(0.0), Included(1.0))
         .remedy("leave it out for 2/7")
         .or(2.0 / 7.0);
-    /// K over the power 0.75 of the effective radius, F = K d^1.25, of the law `power`, which
-    /// requires it.
-    quantity("power_modulus", &STRESS).positive().sometimes_required("\"1 GPa\"");
     /// Coefficient of restitution: relative speed after a head-on collision over that before it.
     number("restitution")
         .within(Included(LEAST_RESTITUTION), Included(1.0))
@@ -118,11 +113,6 @@ pub enum ContactLaw {
         /// 1].
         tangential_stiffness_ratio: f64,
     },
-    /// "power": a force of the power 1.25 of the overlap.
-    Power {
-        /// `power_modulus`, Pa.
-        modulus_pa: f64,
-    },
 }
 
 impl ContactLaw {
@@ -130,7 +120,7 @@ impl ContactLaw {
     fn needs_moduli(&self) -> bool {
         match self {
             Self::HertzMindlin | Self::Dmt { .. } => true,
-            Self::Linear { .. } | Self::Power { .. } => false,
+            Self::Linear { .. } => false,
         }
     }
 }
@@ -193,7 +183,6 @@ const OF_LINEAR: Own = (
     "linear",
     &["normal_stiffness", "tangential_stiffness_ratio"],
 );
-const OF_POWER: Own = ("power", &["power_modulus"]);
 const OF_DMT: Own = ("dmt", &["work_of_adhesion"]);
 
 /// Why laws of Hertz have no keys of stiffness.
@@ -216,7 +205,6 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
     match name.unwrap_or(LawName::HertzMindlin) {
         LawName::Dmt => {
             refuse_of(table, &OF_LINEAR, "dmt", STIFF_BY_MATERIALS)?;
-            refuse_of(table, &OF_POWER, "dmt", STIFF_BY_MATERIALS)?;
             Ok(ContactLaw::Dmt {
                 work_of_adhesion_j_m2: table.read("work_of_adhesion")?,
             })
@@ -224,22 +212,13 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
         LawName::HertzMindlin => {
             refuse_of(table, &OF_DMT, "hertz-mindlin", "which has no adhesion")?;
             refuse_of(table, &OF_LINEAR, "hertz-mindlin", STIFF_BY_MATERIALS)?;
-            refuse_of(table, &OF_POWER, "hertz-mindlin", STIFF_BY_MATERIALS)?;
             Ok(ContactLaw::HertzMindlin)
         }
         LawName::Linear => {
             refuse_of(table, &OF_DMT, "linear", "which has no adhesion")?;
-            refuse_of(table, &OF_POWER, "linear", "whose stiffness is constant")?;
             Ok(ContactLaw::Linear {
                 normal_n_m: table.read("normal_stiffness")?,
                 tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
-            })
-        }
-        LawName::Power => {
-            refuse_of(table, &OF_DMT, "power", "which has no adhesion")?;
-            refuse_of(table, &OF_LINEAR, "power", "whose stiffness grows")?;
-            Ok(ContactLaw::Power {
-                modulus_pa: table.read("power_modulus")?,
             })
         }
     }
@@ -319,10 +298,6 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
             listing.text("law", "linear");
             listing.value("normal_stiffness", &normal_n_m);
             listing.value("tangential_stiffness_ratio", &tangential_stiffness_ratio);
-        }
-        ContactLaw::Power { modulus_pa } => {
-            listing.text("law", "power");
-            listing.value("power_modulus", &modulus_pa);
         }
     }
     listing.value("restitution", &contact.restitution);

@@ -4,12 +4,10 @@
 pub mod dmt;
 pub mod hertz_mindlin;
 pub mod linear;
-pub mod power;
 
 use self::dmt::DerjaguinMullerToporov;
 use self::hertz_mindlin::HertzMindlin;
 use self::linear::Linear;
-use self::power::Power;
 use super::kinematics::ContactKinematics;
 use super::liquid_bridge::LiquidBridge;
 use super::normal::{ImpactLaw, NormalLaw};
@@ -31,8 +29,6 @@ pub enum Law {
     DerjaguinMullerToporov(DerjaguinMullerToporov),
     /// Springs and dashpots.
     Linear(Linear),
-    /// F = K d^1.25.
-    Power(Power),
 }
 
 /// Rolling friction of a pair of materials.
@@ -64,7 +60,6 @@ impl Law {
             Self::HertzMindlin(law) => law,
             Self::DerjaguinMullerToporov(law) => law,
             Self::Linear(law) => law,
-            Self::Power(law) => law,
         }
     }
 }
@@ -91,7 +86,6 @@ impl ContactKind {
             Law::HertzMindlin(law) => self.with_law(&law.in_lanes(all), all, work),
             Law::DerjaguinMullerToporov(law) => self.with_law(&law.in_lanes(all), all, work),
             Law::Linear(law) => self.with_law(&law.in_lanes(all), all, work),
-            Law::Power(law) => self.with_law(&law.in_lanes(all), all, work),
         }
     }
 
