@@ -11,7 +11,6 @@ pub mod clusters;
 pub mod contacts;
 pub mod damping_memory;
 pub mod damping_rate;
-pub mod drag;
 pub mod events;
 pub mod islands;
 pub(crate) mod ledger;
@@ -46,7 +45,6 @@ use self::clusters::Clusters;
 use self::contacts::{ContactPartition, Contacts};
 use self::damping_memory::DampingMemory;
 use self::damping_rate::damping_rate_1_s;
-use self::drag::Drag;
 use self::ledger::EnergyLedger;
 use self::loads::GroupLoad;
 use self::model::Model;
@@ -93,8 +91,6 @@ pub struct State {
     pub walls: Vec<Wall>,
     /// Forces and contacts that measures record in every step. Empty: none.
     pub watches: Vec<Watch>,
-    /// Drag of a fluid at rest. None: there is no fluid.
-    pub drag: Option<Drag>,
     /// Loads.
     pub loads: Vec<GroupLoad>,
     /// Supports.
@@ -161,7 +157,6 @@ impl State {
             sleep: None,
             walls: Vec::new(),
             watches: Vec::new(),
-            drag: None,
             loads: Vec::new(),
             supports: Vec::new(),
             steps: 0,
@@ -221,11 +216,10 @@ impl State {
     }
 
     /// The parts that name particles, and the poses of all particles.
-    pub(crate) fn naming_particles(&mut self) -> (&[Pose], [&mut dyn Renumbered; 7]) {
-        let parts: [&mut dyn Renumbered; 7] = [
+    pub(crate) fn naming_particles(&mut self) -> (&[Pose], [&mut dyn Renumbered; 6]) {
+        let parts: [&mut dyn Renumbered; 6] = [
             &mut self.supports,
             &mut self.loads,
-            &mut self.drag,
             &mut self.rigid_parts,
             &mut self.walls,
             &mut self.bridges,

@@ -31,7 +31,6 @@ use crate::stages::contacts::self_contact::{SELF_CONTACT, find_self_contacts};
 use crate::stages::ledger::bookkeeping::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
 };
-use crate::stages::motion::drag::{DRAG, compute_drag};
 use crate::stages::motion::kick_and_drift::{
     GRAVITY, MOTION, count_falling, drift_particles, kick_particles,
 };
@@ -84,7 +83,6 @@ const INTERACT: &[Part] = &[
     (&FRICTION, count_frictional),
     (&CLUSTERS, find_pieces),
     (&LOADS, apply_loads),
-    (&DRAG, compute_drag),
     (&PARTICLE_DAMPING, compute_particle_damping),
     (&STRUCTURAL_DAMPING, compute_structural_damping),
     (&BOND_DAMPING, compute_bond_damping),

@@ -47,7 +47,6 @@ use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
 use dem_engine::state::clusters::Clusters;
 use dem_engine::state::clusters::sizes::{Sphere, sieve_m};
-use dem_engine::state::drag::Drag;
 use dem_engine::state::events::TopologyChange;
 use dem_engine::state::loads::GroupLoad;
 use dem_engine::state::model::NamedBody;
@@ -160,9 +159,6 @@ pub fn plan(
     state.model.bodies = named;
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;
     state.model.particle_damping = scene.run.local_damping;
-    if scene.run.drag_n_s_m > 0.0 {
-        state.drag = Some(Drag::new(scene.run.drag_n_s_m, state.particles.len()));
-    }
     state.divide();
     state.supports = supports(scene, &groups)?;
     start(scene, &groups, &bodies, &mut state)?;

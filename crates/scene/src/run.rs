@@ -6,7 +6,7 @@ use super::plain_table::plain_table;
 use super::schema::{Kind, Word};
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::{ACCELERATION, TIME, VISCOUS_DAMPING};
+use dem_io::units::{ACCELERATION, TIME};
 
 /// How a run reaches its end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -78,8 +78,6 @@ plain_table! {
             .within(Included(0.0), Excluded(1.0))
             .remedy("write 0 for none")
             .or(0.0);
-        /// Drag of a fluid at rest on each particle: c of a force -c v, not on clumps.
-        drag_n_s_m: f64 = quantity("drag", &VISCOUS_DAMPING).not_negative().or(0.0);
         /// Seed of all random numbers: scattered strengths, inlets.
         seed: u64 = new("seed", Kind::Whole { least: 0, most: Some(u64::MAX), of: "" })
             .remedy("write any such number")

@@ -1,6 +1,5 @@
 //! Motion of single particles: kick and drift, supports, loads, local damping, sleep.
 
-pub(crate) mod drag;
 pub mod kick_and_drift;
 pub mod loads;
 pub mod local_damping;

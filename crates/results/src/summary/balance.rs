@@ -32,8 +32,6 @@ pub struct Balance {
     pub structural_damping_j: f64,
     /// Dissipated by particle damping, J.
     pub local_damping_j: f64,
-    /// Dissipated by the drag of a fluid, J.
-    pub drag_j: f64,
     /// Elastic energy of contacts, J.
     pub contact_elastic_j: f64,
     /// Energy of the attraction of ends that touch, J: below 0.
@@ -125,7 +123,7 @@ pub struct Energy {
 
 /// All terms, in the order of the columns of the time series: their signed sum changes by the
 /// energy error alone.
-pub const ENERGIES: [Energy; 21] = [
+pub const ENERGIES: [Energy; 20] = [
     energy("kinetic_energy_j", Stored, |balance| balance.kinetic_j),
     energy("elastic_energy_j", Stored, |balance| balance.elastic_j()),
     energy("gravity_energy_j", Stored, |balance| balance.gravity_j),
@@ -137,7 +135,6 @@ pub const ENERGIES: [Energy; 21] = [
         balance.structural_damping_j
     }),
     energy("local_damping_j", Lost, |balance| balance.local_damping_j),
-    energy("drag_j", Lost, |balance| balance.drag_j),
     energy("adhesion_j", Stored, |balance| balance.adhesion_j),
     energy("contact_damping_j", Lost, |balance| {
         balance.contact_damping_j

@@ -171,12 +171,6 @@ fn of_what_acts_on_particles() {
         &with(&FREE, &["local damping"]),
     );
     expect(
-        "drag",
-        &scene(", drag = 1e-3", "", "", ""),
-        &with(&FREE, &["drag"]),
-        &with(&FREE, &["drag"]),
-    );
-    expect(
         "a load",
         &scene(
             "",

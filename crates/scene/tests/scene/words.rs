@@ -19,7 +19,6 @@ run.impact_accuracy             0.01
 run.adaptive                    false
 run.gravity                     [0, 0, 0] m/s2
 run.local_damping               0
-run.drag                        0 N s/m
 run.seed                        0
 run.initial_overlap             refuse
 materials.clay.density          from the body, where one needs it

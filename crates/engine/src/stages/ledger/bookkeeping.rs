@@ -22,7 +22,6 @@ use crate::stages::motion::supports::reactions_work_j;
 use crate::stages::stage::{Need, Stage};
 use crate::stages::walls::touches_adhesion_j;
 use crate::state::State;
-use crate::state::drag::Drag;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
@@ -216,13 +215,6 @@ pub(crate) fn after_kick(state: &mut State) {
             total[1][k] += torque[k] + moved[k];
         }
     }
-    for (force, pose) in state
-        .drag
-        .iter()
-        .flat_map(|drag| drag.forces_n.iter().zip(&particles.poses))
-    {
-        add_resultant(&mut total, pose, *force, [0.0; 3], about);
-    }
     let resisted = resultant(&state.scratch.particle_resistance, &particles.poses, about);
     let g = state.model.gravity_m_s2;
     let [sx, sy, sz] = [0, 1, 2].map(|k| ledger.first_moment[k] - ledger.asleep_moment[k]);
@@ -304,7 +296,6 @@ pub fn balance(state: &mut State) -> Balance {
     let friction = friction + state.ledger.joint_friction_j;
     let bridges_j = bridges_energy_j(state);
     let bridges_lost_j = state.bridges.as_ref().map_or(0.0, |bridges| bridges.lost_j);
-    let drag_j = state.drag.as_ref().map_or(0.0, Drag::total_j);
     let (present, scales) = momenta(&state.particles, &state.clumps, state.ledger.about_m);
     let g = state.model.gravity_m_s2;
     let ledger = &mut state.ledger;
@@ -317,8 +308,7 @@ pub fn balance(state: &mut State) -> Balance {
         + friction
         + (ledger.released_j + ledger.damaged_j + ledger.plastic_j)
         + (ledger.particles_broken_j + ledger.rejoined_j)
-        + bridges_lost_j
-        + drag_j;
+        + bridges_lost_j;
     let stored = elastic.total() + contact_elastic + bridges_j;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
@@ -348,7 +338,6 @@ pub fn balance(state: &mut State) -> Balance {
         bond_damping_j: work.bond_damping,
         structural_damping_j: work.structural_damping,
         local_damping_j: work.particle_damping,
-        drag_j,
         contact_elastic_j: contact_elastic - adhesion,
         adhesion_j: adhesion,
         contact_damping_j: contact_damping,
