@@ -28,6 +28,7 @@ pub use cylinder::Cylinder;
 pub use frame::Frame;
 pub use mesh::Mesh;
 pub use one_surface::Place;
+use patches::Divided;
 pub use plane::Plane;
 pub use solid_box::SolidBox;
 pub use touch::Touch;
@@ -79,6 +80,27 @@ impl Shape {
             Self::Box(solid) => Some(solid.touch(centre)),
             Self::Cylinder(cylinder) => Some(cylinder.touch(centre)),
             Self::Mesh(_) => None,
+        }
+    }
+
+    /// Points on its surface, in its own frame, m: its corners, and some on its edges and faces; of
+    /// a plane a single one.
+    pub fn surface_points_m(&self) -> Vec<[f64; 3]> {
+        match self {
+            Self::Plane(plane) => vec![plane.point_m()],
+            Self::Box(solid) => solid.surface_points_m(),
+            Self::Cylinder(cylinder) => cylinder.surface_points_m(),
+            Self::Mesh(mesh) => mesh.surface_points_m(),
+        }
+    }
+
+    /// How it is divided into patches.
+    fn divided(&self) -> &dyn Divided {
+        match self {
+            Self::Plane(plane) => plane,
+            Self::Box(solid) => solid,
+            Self::Cylinder(cylinder) => cylinder,
+            Self::Mesh(mesh) => mesh,
         }
     }
 
