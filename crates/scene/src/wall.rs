@@ -20,13 +20,13 @@ use super::names::meaning;
 use super::plain_table::plain_table;
 use super::schema::{Kind, table_schema};
 use super::shape::{
-    BOX, BoxShape, CYLINDER, CylinderShape, UNIT, list_stl, read_box, read_cylinder,
-    refuse_without_stl, stl,
+    BOX, BoxShape, CYLINDER, CylinderShape, SPHERE, SphereShape, UNIT, list_stl, read_box,
+    read_cylinder, read_sphere, refuse_without_stl, stl,
 };
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGLE, ANGULAR_VELOCITY, FREQUENCY, LENGTH, VELOCITY};
-use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox};
+use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox, Sphere};
 
 table_schema! {
     /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement, a servo, an
@@ -39,6 +39,8 @@ table_schema! {
     table("box", &BOX);
     /// A solid cylinder, with particles outside.
     table("cylinder", &CYLINDER);
+    /// A solid sphere, with particles outside.
+    table("sphere", &SPHERE);
     /// File of the surface's triangles (STL, OBJ, PLY or 3MF), relative to the folder of the scene;
     /// requires `unit`, but for a 3MF.
     text("stl", "a file");
@@ -91,6 +93,8 @@ pub enum WallShape {
     Box(BoxShape),
     /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
     Cylinder(CylinderShape),
+    /// `sphere = { centre, radius }`: a solid ball, with particles outside.
+    Sphere(SphereShape),
     /// `stl`, `unit` and `scale`: triangles.
     Stl {
         /// `stl`: the file, resolved against the folder of the scene.
@@ -118,7 +122,7 @@ plain_table! {
 /// A wall, fixed or moving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
-    /// `plane`, `box`, `cylinder` or `stl`
+    /// `plane`, `box`, `cylinder`, `sphere` or `stl`
     pub shape: WallShape,
     /// `material`: a name of `[materials]`.
     pub material: String,
@@ -155,6 +159,9 @@ impl WallShape {
                 let ends = [from_pivot(pin.from_m), from_pivot(pin.to_m)];
                 Shape::Cylinder(Cylinder::new(ends, pin.radius_m)?)
             }
+            Self::Sphere(ball) => {
+                Shape::Sphere(Sphere::new(from_pivot(ball.centre_m), ball.radius_m)?)
+            }
             Self::Stl {
                 path,
                 unit_m,
@@ -170,6 +177,7 @@ impl WallShape {
             Self::Plane(plane) => Some([plane.point_m; 2]),
             Self::Box(of) => Some([of.min_m, of.max_m]),
             Self::Cylinder(pin) => Some([pin.from_m, pin.to_m]),
+            Self::Sphere(ball) => Some([ball.centre_m; 2]),
             Self::Stl { .. } => None,
         }
     }
@@ -188,6 +196,7 @@ impl WallShape {
                 let length_m = (x * x + y * y + z * z).sqrt();
                 pin.radius_m.min(0.5 * length_m)
             }
+            Self::Sphere(ball) => ball.radius_m,
             Self::Stl { .. } => 0.0,
         }
     }
@@ -246,13 +255,13 @@ pub(super) fn list(wall: &Wall, listing: &mut Listing) {
     }
 }
 
-const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
+const SHAPES: [&str; 5] = ["plane", "box", "cylinder", "sphere", "stl"];
 
 /// The key of the shape of a wall, and the shape.
 fn read_shape(wall: &Table<'_>, folder: &Path) -> Result<(&'static str, WallShape)> {
     let one = "a wall has one shape: remove one, or make two walls";
     let Some((key, field)) = wall.at_most_one(&SHAPES, one)? else {
-        let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius } or stl = \"plate.stl\"";
+        let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius }, sphere = { centre, radius } or stl = \"plate.stl\"";
         return Err(wall.fault("has no shape", remedy));
     };
     refuse_without_stl(wall, &["unit", "scale"], key)?;
@@ -260,6 +269,7 @@ fn read_shape(wall: &Table<'_>, folder: &Path) -> Result<(&'static str, WallShap
         "plane" => WallShape::Plane(PlaneShape::read(&Table::of(&field, &PLANE)?)?),
         "box" => WallShape::Box(read_box(&field, "less than", |low, high| low < high)?),
         "cylinder" => WallShape::Cylinder(read_cylinder(&field)?),
+        "sphere" => WallShape::Sphere(read_sphere(&field)?),
         _ => {
             let (path, unit_m) = stl(&field, wall, folder)?;
             let scale = wall.read("scale")?;
@@ -278,6 +288,7 @@ fn list_shape(shape: &WallShape, listing: &mut Listing) {
         WallShape::Plane(of) => listing.table("plane", &PLANE, |listing| of.list(listing)),
         WallShape::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
         WallShape::Cylinder(of) => listing.table("cylinder", &CYLINDER, |listing| of.list(listing)),
+        WallShape::Sphere(of) => listing.table("sphere", &SPHERE, |listing| of.list(listing)),
         WallShape::Stl {
             path,
             unit_m,
