@@ -153,13 +153,6 @@ fn shape(plan: &Plan, wall: &Wall, refusals: &mut Refusals) -> Option<WrittenSha
                 ),
             }
         }
-        Shape::Sphere(sphere) => {
-            let centre_m = numbers(&frame.to_space(sphere.centre_m()));
-            Some(format!(
-                "sphere {centre_m} {:e} side out",
-                sphere.radius_m()
-            ))
-        }
         Shape::Mesh(mesh) => {
             let motion = surface_motion(&part, wall, refusals)?;
             return Some(WrittenShape::Surface(surface(plan, wall, mesh, motion)));

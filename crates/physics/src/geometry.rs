@@ -19,7 +19,6 @@ pub mod plane;
 pub mod region;
 pub mod solid_box;
 pub mod spatial_order;
-pub mod sphere;
 mod touch;
 
 pub use dem_io::Bounds;
@@ -32,7 +31,6 @@ pub use one_surface::Place;
 use patches::Divided;
 pub use plane::Plane;
 pub use solid_box::SolidBox;
-pub use sphere::Sphere;
 pub use touch::Touch;
 
 /// The shape of a wall.
@@ -44,8 +42,6 @@ pub enum Shape {
     Box(SolidBox),
     /// A solid cylinder.
     Cylinder(Cylinder),
-    /// A solid sphere.
-    Sphere(Sphere),
     /// A triangulated surface.
     Mesh(Mesh),
 }
@@ -83,7 +79,6 @@ impl Shape {
             Self::Plane(plane) => Some(plane.touch(centre)),
             Self::Box(solid) => Some(solid.touch(centre)),
             Self::Cylinder(cylinder) => Some(cylinder.touch(centre)),
-            Self::Sphere(sphere) => Some(sphere.touch(centre)),
             Self::Mesh(_) => None,
         }
     }
@@ -95,7 +90,6 @@ impl Shape {
             Self::Plane(plane) => vec![plane.point_m()],
             Self::Box(solid) => solid.surface_points_m(),
             Self::Cylinder(cylinder) => cylinder.surface_points_m(),
-            Self::Sphere(sphere) => sphere.surface_points_m(),
             Self::Mesh(mesh) => mesh.surface_points_m(),
         }
     }
@@ -106,7 +100,6 @@ impl Shape {
             Self::Plane(plane) => plane,
             Self::Box(solid) => solid,
             Self::Cylinder(cylinder) => cylinder,
-            Self::Sphere(sphere) => sphere,
             Self::Mesh(mesh) => mesh,
         }
     }
@@ -131,7 +124,7 @@ impl Shape {
     /// went in.
     pub fn is_finite_solid(&self) -> bool {
         match self {
-            Self::Box(_) | Self::Cylinder(_) | Self::Sphere(_) => true,
+            Self::Box(_) | Self::Cylinder(_) => true,
             Self::Plane(_) | Self::Mesh(_) => false,
         }
     }
@@ -143,7 +136,6 @@ impl Shape {
             Self::Plane(_) => (true, false),
             Self::Box(_) => (solid_box::is_face(feature), false),
             Self::Cylinder(_) => (cylinder::is_end(feature), false),
-            Self::Sphere(_) => (false, false),
             Self::Mesh(mesh) => (mesh.is_flat(feature), mesh.is_fine(feature, radius_m)),
         };
         Place {
@@ -177,7 +169,6 @@ impl Shape {
             Self::Plane(plane) => plane.bounds(),
             Self::Box(solid) => solid.bounds(),
             Self::Cylinder(cylinder) => cylinder.bounds(),
-            Self::Sphere(sphere) => sphere.bounds(),
             Self::Mesh(mesh) => mesh.bounds(),
         }
     }

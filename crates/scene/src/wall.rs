@@ -20,13 +20,13 @@ use super::names::meaning;
 use super::plain_table::plain_table;
 use super::schema::{Kind, table_schema};
 use super::shape::{
-    BOX, BoxShape, CYLINDER, CylinderShape, SPHERE, SphereShape, UNIT, list_stl, read_box,
-    read_cylinder, read_sphere, refuse_without_stl, stl,
+    BOX, BoxShape, CYLINDER, CylinderShape, UNIT, list_stl, read_box, read_cylinder,
+    refuse_without_stl, stl,
 };
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGLE, ANGULAR_VELOCITY, FREQUENCY, LENGTH, VELOCITY};
-use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox, Sphere};
+use dem_physics::geometry::{Cylinder, Mesh, Plane, Shape, SolidBox};
 
 table_schema! {
     /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement, a servo, an
@@ -39,8 +39,6 @@ table_schema! {
     table("box", &BOX);
     /// A solid cylinder, with particles outside.
     table("cylinder", &CYLINDER);
-    /// A solid sphere, with particles outside.
-    table("sphere", &SPHERE);
     /// File of the surface's triangles (STL, OBJ, PLY or 3MF), relative to the folder of the scene;
     /// requires `unit`, but for a 3MF.
     text("stl", "a file");
@@ -93,8 +91,6 @@ pub enum WallShape {
     Box(BoxShape),
     /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
     Cylinder(CylinderShape),
-    /// `sphere = { centre, radius }`: a solid ball, with particles outside.
-    Sphere(SphereShape),
     /// `stl`, `unit` and `scale`: triangles.
     Stl {
         /// `stl`: the file, resolved against the folder of the scene.
@@ -122,7 +118,7 @@ plain_table! {
 /// A wall, fixed or moving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
-    /// `plane`, `box`, `cylinder`, `sphere` or `stl`
+    /// `plane`, `box`, `cylinder` or `stl`
     pub shape: WallShape,
     /// `material`: a name of `[materials]`.
     pub material: String,
@@ -159,9 +155,6 @@ impl WallShape {
                 let ends = [from_pivot(pin.from_m), from_pivot(pin.to_m)];
                 Shape::Cylinder(Cylinder::new(ends, pin.radius_m)?)
             }
-            Self::Sphere(ball) => {
-                Shape::Sphere(Sphere::new(from_pivot(ball.centre_m), ball.radius_m)?)
-            }
             Self::Stl {
                 path,
                 unit_m,
@@ -177,7 +170,6 @@ impl WallShape {
             Self::Plane(plane) => Some([plane.point_m; 2]),
             Self::Box(of) => Some([of.min_m, of.max_m]),
             Self::Cylinder(pin) => Some([pin.from_m, pin.to_m]),
-            Self::Sphere(ball) => Some([ball.centre_m; 2]),
             Self::Stl { .. } => None,
         }
     }
@@ -196,7 +188,6 @@ impl WallShape {
                 let length_m = (x * x + y * y + z * z).sqrt();
                 pin.radius_m.min(0.5 * length_m)
             }
-            Self::Sphere(ball) => ball.radius_m,
             Self::Stl { .. } => 0.0,
         }
     }
@@ -255,13 +246,13 @@ pub(super) fn list(wall: &Wall, listing: &mut Listing) {
     }
 }
 
-const SHAPES: [&str; 5] = ["plane", "box", "cylinder", "sphere", "stl"];
+const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
 
 /// The key of the shape of a wall, and the shape.
 fn read_shape(wall: &Table<'_>, folder: &Path) -> Result<(&'static str, WallShape)> {
     let one = "a wall has one shape: remove one, or make two walls";
     let Some((key, field)) = wall.at_most_one(&SHAPES, one)? else {
-        let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius }, sphere = { centre, radius } or stl = \"plate.stl\"";
+        let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius } or stl = \"plate.stl\"";
         return Err(wall.fault("has no shape", remedy));
     };
     refuse_without_stl(wall, &["unit", "scale"], key)?;
@@ -269,7 +260,6 @@ fn read_shape(wall: &Table<'_>, folder: &Path) -> Result<(&'static str, WallShap
         "plane" => WallShape::Plane(PlaneShape::read(&Table::of(&field, &PLANE)?)?),
         "box" => WallShape::Box(read_box(&field, "less than", |low, high| low < high)?),
         "cylinder" => WallShape::Cylinder(read_cylinder(&field)?),
-        "sphere" => WallShape::Sphere(read_sphere(&field)?),
         _ => {
             let (path, unit_m) = stl(&field, wall, folder)?;
             let scale = wall.read("scale")?;
@@ -288,7 +278,6 @@ fn list_shape(shape: &WallShape, listing: &mut Listing) {
         WallShape::Plane(of) => listing.table("plane", &PLANE, |listing| of.list(listing)),
         WallShape::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
         WallShape::Cylinder(of) => listing.table("cylinder", &CYLINDER, |listing| of.list(listing)),
-        WallShape::Sphere(of) => listing.table("sphere", &SPHERE, |listing| of.list(listing)),
         WallShape::Stl {
             path,
             unit_m,

@@ -190,13 +190,6 @@ fn solid(shape: &Shape) -> Option<Surface> {
     match shape {
         Shape::Box(solid) => Some(Surface::solid_box(&solid.bounds())),
         Shape::Cylinder(pin) => Some(Surface::cylinder(pin.ends_m(), pin.radius_m())),
-        Shape::Sphere(ball) => {
-            let (vertices_m, triangles) = ball.triangles();
-            Some(Surface {
-                solid: true,
-                ..Surface::mesh(&vertices_m, &triangles)
-            })
-        }
         Shape::Plane(_) | Shape::Mesh(_) => None,
     }
 }

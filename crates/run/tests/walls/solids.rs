@@ -1,6 +1,6 @@
 //! Planes, boxes and cylinders.
 
-use dem_physics::geometry::{Cylinder, Plane, Shape, SolidBox, Sphere};
+use dem_physics::geometry::{Cylinder, Plane, Shape, SolidBox};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -134,13 +134,4 @@ fn shapes_without_sense_are_refused() {
         assert_eq!(error.exit_code(), 2, "{error}");
         assert!(!error.remedy.is_empty());
     }
-}
-
-#[test]
-fn a_sphere_is_touched_from_outside_and_pushes_out_from_inside() {
-    let shape = Shape::Sphere(Sphere::new([0.0, 0.0, 1.0], 0.5).unwrap());
-    for (x, distance_m) in [(0.7, 0.2), (0.3, -0.2)] {
-        assert!((shape.distance_m([x, 0.0, 1.0]) - distance_m).abs() < 1e-15);
-    }
-    assert_eq!(shape.bounds().low, [-0.5, -0.5, 0.5]);
 }
