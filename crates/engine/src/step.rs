@@ -11,7 +11,6 @@ use crate::stages::bonds::damage::press_damaged_bonds;
 use crate::stages::bonds::damping::{BOND_DAMPING, compute_bond_damping};
 use crate::stages::bonds::flat_joints::{FLAT_JOINTS, compute_flat_joints};
 use crate::stages::bonds::forces::{BONDS, clear_wrenches, compute_bonds};
-use crate::stages::bonds::hardening::{HARDENING, harden_bonds};
 use crate::stages::bonds::incremental::{HISTORIES, compute_incremental_bonds};
 use crate::stages::bonds::plasticity::{PLASTICITY, compute_plastic_bonds};
 use crate::stages::bonds::structural_damping::{STRUCTURAL_DAMPING, compute_structural_damping};
@@ -63,7 +62,6 @@ const INTERACT: &[Part] = &[
     (&SELF_CONTACT, find_self_contacts),
     (&SEARCH, renew_lists),
     (&MOTION, clear_wrenches),
-    (&HARDENING, harden_bonds),
     (&BONDS, compute_bonds),
     (&HISTORIES, compute_incremental_bonds),
     (&PLASTICITY, compute_plastic_bonds),

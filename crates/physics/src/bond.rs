@@ -8,7 +8,6 @@ pub mod damping;
 pub mod damping_models;
 pub mod failure;
 pub mod flat_joint;
-pub mod hardening;
 pub mod incremental;
 pub mod models;
 pub mod pair;

@@ -4,7 +4,6 @@ use dem_scene::{BondDamping, BondFailure, BondKind, Formulation};
 
 use dem_engine::state::bonds::{BondLaw, BondRule};
 use dem_physics::bond::failure::{Criteria, has_strength};
-use dem_physics::bond::hardening::Hardening;
 use dem_physics::bond::plasticity::Plasticity;
 use dem_physics::bond::rate_strengthening::RateStrengthening;
 
@@ -30,8 +29,6 @@ fn law(kind: &BondKind) -> BondLaw {
         BondLaw::Softening {
             fracture_energy_j_m2,
         }
-    } else if let Some(per_loading) = kind.hardening_per_loading {
-        BondLaw::Hardening(Hardening { per_loading })
     } else {
         BondLaw::Elastic
     }

@@ -44,8 +44,6 @@ pub struct BondKind {
     pub failure: BondFailure,
     /// `plasticity = { ... }`. None: elastic until it breaks.
     pub plasticity: Option<BondPlasticity>,
-    /// `hardening_per_loading`. None: strengths do not rise.
-    pub hardening_per_loading: Option<f64>,
     /// `contact_beside_bond`: the contact law of the two ends acts beside the bond.
     pub contact_beside_bond: bool,
     /// `calibrated_diameter`: mean diameter of the spheres with which they were calibrated, m.
@@ -95,9 +93,6 @@ table_schema! {
     table("failure", &FAILURE);
     /// Yield strengths; without them bonds are elastic until they break.
     table("plasticity", &PLASTICITY);
-    /// Rise of all strengths with each loading of the bond, which begins as it is pulled, over the
-    /// strength at the start.
-    number("hardening_per_loading").positive().otherwise("none");
     /// The contact law of the two materials acts beside the bond, from the overlap at which the
     /// ends were bonded.
     flag("contact_beside_bond", false);
@@ -194,14 +189,12 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
             .read_by("failure", |field| bond_failure::read(&field))?
             .unwrap_or_default(),
         plasticity: table.read_by("plasticity", |field| plasticity(&field))?,
-        hardening_per_loading: table.read("hardening_per_loading")?,
         contact_beside_bond: table.read("contact_beside_bond")?,
         calibrated_diameter_m: table.read("calibrated_diameter")?,
         calibrated_across: table.read("calibrated_across")?,
         size_correction: table.read("size_correction")?,
     };
     conflicts::BOND.refuse_key("plasticity", &table)?;
-    check_hardening(&table, &kind)?;
     match kind.model {
         BondModel::FlatJoint { .. } => check_flat_joint(&table, &kind.failure)?,
         BondModel::Pin { .. } => check_pin(&table, &kind.damping)?,
@@ -308,35 +301,6 @@ fn plasticity(field: &Field<'_>) -> Result<BondPlasticity> {
     Ok(plasticity)
 }
 
-/// Whether a bond that hardens has strengths, and no other law.
-fn check_hardening(table: &Table<'_>, kind: &BondKind) -> Result<()> {
-    let others = [
-        ("plasticity", kind.plasticity.is_some()),
-        (
-            "formulation = \"incremental\"",
-            kind.formulation == Formulation::Incremental,
-        ),
-        (
-            "failure.fracture_energy",
-            kind.failure.fracture_energy_j_m2.is_some(),
-        ),
-        ("model = \"flat-joint\"", kind.joint.is_some()),
-    ];
-    let other = others.into_iter().find(|(_, is_given)| *is_given);
-    match (table.get("hardening_per_loading"), other) {
-        (Some(field), Some((other, _))) => {
-            let problem = format!("{} does not go with {other}", field.path);
-            Err(field.refuse(problem, "remove one of the two"))
-        }
-        (Some(field), None) if table.get("failure").is_none() => {
-            let problem = format!("{} has no effect without failure", field.path);
-            let remedy = "add failure = { tensile_strength = \"1 MPa\" }, or remove it";
-            Err(field.refuse(problem, remedy))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Whether a pin, which has no moments, has no damping of them.
 fn check_pin(table: &Table<'_>, damping: &BondDamping) -> Result<()> {
     let of_moments = [
@@ -417,7 +381,6 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
             plasticity.list(listing)
         });
     }
-    listing.value("hardening_per_loading", &kind.hardening_per_loading);
     listing.value("contact_beside_bond", &kind.contact_beside_bond);
     listing.value("calibrated_diameter", &kind.calibrated_diameter_m);
     listing.value("calibrated_across", &kind.calibrated_across);

@@ -7,7 +7,6 @@ pub mod damping;
 pub mod energy_kernel;
 pub(crate) mod flat_joints;
 pub mod forces;
-pub(crate) mod hardening;
 pub mod incremental;
 mod one_by_one;
 pub(crate) mod plasticity;

@@ -24,7 +24,7 @@ fn strengths() -> impl Iterator<Item = f64> {
 }
 
 /// Names and keys of kinds of bonds.
-const KINDS: [(&str, &str); 9] = [
+const KINDS: [(&str, &str); 8] = [
     ("timoshenko", "model = \"timoshenko\""),
     ("parallel", "model = \"parallel\""),
     ("rojek", "model = \"rojek\""),
@@ -32,10 +32,6 @@ const KINDS: [(&str, &str); 9] = [
     ("incremental", "formulation = \"incremental\""),
     ("plastic", PLASTIC),
     ("joint", JOINT),
-    (
-        "hardened",
-        "hardening_per_loading = 0.1, failure = { tensile_strength = STRENGTH }",
-    ),
     (
         "damaged",
         "failure = { tensile_strength = STRENGTH, shear_strength = STRENGTH, fracture_energy = 100 }",

@@ -14,7 +14,6 @@ use super::law::{BondLaw, BondRule};
 use super::stored::{FileColumn, StoredBond, column, frame_between, number, vector};
 use dem_physics::bond::damage::Damage;
 use dem_physics::bond::flat_joint::{FlatJoint, elements, elements_from, first_edge};
-use dem_physics::bond::hardening::Loadings;
 use dem_physics::bond::incremental::History;
 use dem_physics::bond::plasticity::PlasticDeformation;
 use dem_physics::bond::rate_strengthening::LargestRate;
@@ -198,32 +197,6 @@ impl BondHistory for PlasticDeformation {
         [
             "it has yielded, and its kind of bonds has no plasticity",
             "add a table plasticity to it, or remove the arrays 'plastic_...' from the file",
-        ]
-        .map(str::to_owned)
-    }
-}
-
-impl BondHistory for Loadings {
-    const COLUMNS: &'static [FileColumn] = &[column("history_loadings", 2)];
-
-    fn is_of(rule: &BondRule) -> bool {
-        rule.law.hardening().is_some()
-    }
-
-    fn store(&self, _bond: &StoredBond, to: &mut [Vec<f64>]) {
-        to[0].extend([f64::from(self.count), f64::from(u8::from(self.is_loaded))]);
-    }
-
-    fn restore(&mut self, from: &[&[f64]], _bond: &mut StoredBond) -> Result<()> {
-        self.count = number(from[0]) as u32;
-        self.is_loaded = from[0].get(1).is_some_and(|loaded| *loaded != 0.0);
-        Ok(())
-    }
-
-    fn foreign(_from: &[&[f64]]) -> [String; 2] {
-        [
-            "it has hardened, and its kind of bonds does not",
-            "give it hardening_per_loading, or remove the array 'history_loadings' from the file",
         ]
         .map(str::to_owned)
     }
@@ -463,8 +436,6 @@ columns! {
     plastics: PlasticDeformation,
     /// Elements of flat joints, none for bonds of other laws.
     joints: FlatJoint,
-    /// Loadings of bonds that harden.
-    loadings: Loadings,
     /// Largest strain rates.
     largest_rates: LargestRate,
 }

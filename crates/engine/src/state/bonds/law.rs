@@ -2,7 +2,6 @@
 
 use dem_physics::bond::failure::Criteria;
 use dem_physics::bond::flat_joint::FlatJointLaw;
-use dem_physics::bond::hardening::Hardening;
 use dem_physics::bond::plasticity::Plasticity;
 use dem_physics::bond::rate_strengthening::RateStrengthening;
 use dem_scene::StrainRateMeasure;
@@ -24,8 +23,6 @@ pub enum BondLaw {
     },
     /// A section of elements, each of which fails by itself.
     FlatJoint(FlatJointLaw),
-    /// Elastic, with strengths that rise with each loading.
-    Hardening(Hardening),
 }
 
 /// What the forces of a bond follow from.
@@ -58,14 +55,6 @@ impl BondLaw {
         }
     }
 
-    /// How strengths rise with each loading. None: they do not.
-    pub fn hardening(&self) -> Option<Hardening> {
-        match self {
-            Self::Hardening(law) => Some(*law),
-            _ => None,
-        }
-    }
-
     /// Elements of a flat joint. None: bonds have none.
     pub fn flat_joint(&self) -> Option<FlatJointLaw> {
         match self {
@@ -77,10 +66,7 @@ impl BondLaw {
     /// What the forces of a bond follow from.
     pub(super) fn source(&self) -> Source {
         match self {
-            Self::Elastic
-            | Self::ElastoPlastic(_)
-            | Self::Softening { .. }
-            | Self::Hardening(_) => Source::Positions,
+            Self::Elastic | Self::ElastoPlastic(_) | Self::Softening { .. } => Source::Positions,
             Self::Incremental => Source::Sums,
             Self::FlatJoint(_) => Source::Elements,
         }
@@ -94,14 +80,13 @@ impl BondLaw {
             Self::ElastoPlastic(_) => Some("plasticity"),
             Self::Softening { .. } => Some("failure.fracture_energy"),
             Self::FlatJoint(_) => Some("model"),
-            Self::Hardening(_) => Some("hardening_per_loading"),
         }
     }
 
     /// Whether bonds are computed one at a time, by a stage of their own.
     pub fn is_single(&self) -> bool {
         match self {
-            Self::Elastic | Self::Softening { .. } | Self::Hardening(_) => false,
+            Self::Elastic | Self::Softening { .. } => false,
             Self::Incremental | Self::ElastoPlastic(_) | Self::FlatJoint(_) => true,
         }
     }
