@@ -22,13 +22,14 @@ pub mod spatial_order;
 mod touch;
 
 pub use dem_io::Bounds;
+use dem_io::Result;
 use serde::Serialize;
 
 pub use cylinder::Cylinder;
 pub use frame::Frame;
 pub use mesh::Mesh;
 pub use one_surface::Place;
-use patches::Divided;
+use patches::{Divided, Patch, Patches};
 pub use plane::Plane;
 pub use solid_box::SolidBox;
 pub use touch::Touch;
@@ -171,5 +172,23 @@ impl Shape {
             Self::Cylinder(cylinder) => cylinder.bounds(),
             Self::Mesh(mesh) => mesh.bounds(),
         }
+    }
+}
+
+impl Divided for Shape {
+    fn patches(&self, edge_m: f64) -> Result<Patches> {
+        self.divided().patches(edge_m)
+    }
+
+    fn count(&self, patches: &Patches) -> Option<u64> {
+        self.divided().count(patches)
+    }
+
+    fn at(&self, patches: &Patches, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
+        self.divided().at(patches, point_m, inward)
+    }
+
+    fn patch(&self, patches: &Patches, number: u64) -> Patch {
+        self.divided().patch(patches, number)
     }
 }

@@ -11,7 +11,10 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::{Cylinder, Mesh, Plane, Shape, SolidBox};
+use super::cylinder::Cylinder;
+use super::mesh::Mesh;
+use super::plane::Plane;
+use super::solid_box::SolidBox;
 
 /// Most patches of a box, a cylinder or the part of a plane that bodies can reach.
 pub const MOST_PATCHES: f64 = 1e6;
@@ -31,7 +34,7 @@ pub struct Patches {
 }
 
 /// A shape whose surface is divided into patches.
-pub(super) trait Divided {
+pub trait Divided {
     /// Its patches with edges of at most `edge_m`, m.
     ///
     /// # Errors
@@ -68,24 +71,24 @@ impl Patches {
     ///
     /// # Errors
     /// More than [`MOST_PATCHES`] patches of a box or a cylinder.
-    pub fn new(shape: &Shape, edge_m: f64) -> Result<Self> {
-        shape.divided().patches(edge_m)
+    pub fn new(shape: &dyn Divided, edge_m: f64) -> Result<Self> {
+        shape.patches(edge_m)
     }
 
     /// Number of patches. None: a plane is infinite.
-    pub fn count(&self, shape: &Shape) -> Option<u64> {
-        shape.divided().count(self)
+    pub fn count(&self, shape: &dyn Divided) -> Option<u64> {
+        shape.count(self)
     }
 
     /// Number of the patch at a point of the surface, m, where `inward` is the unit vector into the
     /// wall. Numbers are below [`Self::count`], those of a plane below 2^64.
-    pub fn at(&self, shape: &Shape, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
-        shape.divided().at(self, point_m, inward)
+    pub fn at(&self, shape: &dyn Divided, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
+        shape.at(self, point_m, inward)
     }
 
     /// The patch of this number.
-    pub fn patch(&self, shape: &Shape, number: u64) -> Patch {
-        shape.divided().patch(self, number)
+    pub fn patch(&self, shape: &dyn Divided, number: u64) -> Patch {
+        shape.patch(self, number)
     }
 
     /// These numbers of patches.
@@ -366,10 +369,10 @@ fn across(normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test stops where it fails")]
 mod tests {
-    use super::*;
+    use crate::geometry::patches::*;
 
     /// Shapes with patches of 2 m, and the areas of their surfaces, m2.
-    fn shapes() -> [(Shape, f64); 3] {
+    fn shapes() -> [(Box<dyn Divided>, f64); 3] {
         let solid = SolidBox::new([-1.0, 0.0, 2.0], [4.0, 3.0, 9.0]).unwrap();
         let pin = Cylinder::new([[1.0, 2.0, 3.0], [4.0, 6.0, 3.0]], 2.0).unwrap();
         let corners = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]];
@@ -377,23 +380,23 @@ mod tests {
         let mesh = Mesh::new(&corners, &tetrahedron).unwrap();
         let of_mesh = 13.5 + 4.5 * 3.0_f64.sqrt();
         [
-            (Shape::Box(solid), 2.0 * (5.0 * 3.0 + 3.0 * 7.0 + 7.0 * 5.0)),
-            (Shape::Cylinder(pin), TAU * 2.0 * (5.0 + 2.0)),
-            (Shape::Mesh(mesh), of_mesh),
+            (Box::new(solid), 2.0 * (5.0 * 3.0 + 3.0 * 7.0 + 7.0 * 5.0)),
+            (Box::new(pin), TAU * 2.0 * (5.0 + 2.0)),
+            (Box::new(mesh), of_mesh),
         ]
     }
 
     #[test]
     fn patches_cover_a_shape_and_are_found_at_their_middles() {
         for (shape, area_m2) in shapes() {
-            let patches = Patches::new(&shape, 2.0).unwrap();
-            let count = patches.count(&shape).unwrap();
+            let patches = Patches::new(&*shape, 2.0).unwrap();
+            let count = patches.count(&*shape).unwrap();
             let mut sum_m2 = 0.0;
             for number in 0..count {
-                let patch = patches.patch(&shape, number);
+                let patch = patches.patch(&*shape, number);
                 let inward = patch.normal.map(|n| -n);
                 assert_eq!(
-                    patches.at(&shape, patch.centre_m, inward),
+                    patches.at(&*shape, patch.centre_m, inward),
                     number,
                     "{patch:?}"
                 );
@@ -417,14 +420,13 @@ mod tests {
     fn a_plane_has_squares_on_all_sides_of_its_point() {
         let plane = Plane::new([1.0, 2.0, 3.0], [1.0, 2.0, -2.0]).unwrap();
         let [u, v] = across(&plane.normal().into());
-        let shape = Shape::Plane(plane);
-        let patches = Patches::new(&shape, 2.0).unwrap();
-        assert_eq!(patches.count(&shape), None);
+        let patches = Patches::new(&plane, 2.0).unwrap();
+        assert_eq!(patches.count(&plane), None);
         let mut numbers = Vec::new();
         for [i, j] in [[-2.5, 0.5], [-0.5, -0.5], [0.5, 0.5], [7.5, -3.5]] {
             let middle = Vector3::from(plane.point_m()) + (u * i + v * j) * 2.0;
-            let number = patches.at(&shape, middle.into(), plane.normal().map(|n| -n));
-            let patch = patches.patch(&shape, number);
+            let number = patches.at(&plane, middle.into(), plane.normal().map(|n| -n));
+            let patch = patches.patch(&plane, number);
             assert!((Vector3::from(patch.centre_m) - middle).norm() < 1e-12);
             assert!((patch.area_m2 - 4.0).abs() < 1e-12);
             assert_runs_around(&patch);
@@ -437,8 +439,8 @@ mod tests {
     #[test]
     fn a_patch_larger_than_the_wall_is_each_of_its_faces() {
         let (shape, _) = &shapes()[0];
-        let patches = Patches::new(shape, 100.0).unwrap();
-        assert_eq!(patches.count(shape), Some(6));
-        assert!(Patches::new(shape, 1e-3).is_err());
+        let patches = Patches::new(&**shape, 100.0).unwrap();
+        assert_eq!(patches.count(&**shape), Some(6));
+        assert!(Patches::new(&**shape, 1e-3).is_err());
     }
 }
