@@ -190,37 +190,33 @@ type Misfit = (bool, &'static str, &'static str, &'static str);
 
 const LEAVE_OUT: &str = "leave it out, or run the scene with dem-run";
 
-fn misfits_of_law(rule: &BondRule) -> [Misfit; 6] {
-    [
-        (
-            rule.law == BondLaw::Incremental,
-            "formulation",
+fn misfits_of_law(rule: &BondRule) -> [Misfit; 3] {
+    let (why, remedy) = match rule.law {
+        BondLaw::Incremental => (
             "bpm/rotational computes forces from the present positions, not step by step",
             "use formulation = \"total\"",
         ),
+        BondLaw::FlatJoint(_) => (
+            "bonds of bpm/rotational break as a whole",
+            "use another model, such as \"timoshenko\"",
+        ),
+        BondLaw::Softening { .. } => (
+            "bonds of bpm/rotational break at their strength and do not soften",
+            LEAVE_OUT,
+        ),
+        _ => (
+            "bonds of bpm/rotational are elastic until they break",
+            LEAVE_OUT,
+        ),
+    };
+    let key = rule.law.key();
+    [
+        (key.is_some(), key.unwrap_or_default(), why, remedy),
         (
             rule.structural_damping > 0.0,
             "damping.structural_damping",
             "damping of bpm/rotational is viscous",
             "use damping_ratio, or run the scene with dem-run",
-        ),
-        (
-            rule.law.flat_joint().is_some(),
-            "model",
-            "bonds of bpm/rotational break as a whole",
-            "use another model, such as \"timoshenko\"",
-        ),
-        (
-            rule.law.plasticity().is_some(),
-            "plasticity",
-            "bonds of bpm/rotational are elastic until they break",
-            LEAVE_OUT,
-        ),
-        (
-            rule.law.fracture_energy_j_m2().is_some(),
-            "failure.fracture_energy",
-            "bonds of bpm/rotational break at their strength and do not soften",
-            LEAVE_OUT,
         ),
         (
             rule.strengthening.is_some(),

@@ -22,12 +22,14 @@ pub mod spatial_order;
 mod touch;
 
 pub use dem_io::Bounds;
+use dem_io::Result;
 use serde::Serialize;
 
 pub use cylinder::Cylinder;
 pub use frame::Frame;
 pub use mesh::Mesh;
 pub use one_surface::Place;
+use patches::{Divided, Patch, Patches};
 pub use plane::Plane;
 pub use solid_box::SolidBox;
 pub use touch::Touch;
@@ -79,6 +81,27 @@ impl Shape {
             Self::Box(solid) => Some(solid.touch(centre)),
             Self::Cylinder(cylinder) => Some(cylinder.touch(centre)),
             Self::Mesh(_) => None,
+        }
+    }
+
+    /// Points on its surface, in its own frame, m: its corners, and some on its edges and faces; of
+    /// a plane a single one.
+    pub fn surface_points_m(&self) -> Vec<[f64; 3]> {
+        match self {
+            Self::Plane(plane) => vec![plane.point_m()],
+            Self::Box(solid) => solid.surface_points_m(),
+            Self::Cylinder(cylinder) => cylinder.surface_points_m(),
+            Self::Mesh(mesh) => mesh.surface_points_m(),
+        }
+    }
+
+    /// How it is divided into patches.
+    fn divided(&self) -> &dyn Divided {
+        match self {
+            Self::Plane(plane) => plane,
+            Self::Box(solid) => solid,
+            Self::Cylinder(cylinder) => cylinder,
+            Self::Mesh(mesh) => mesh,
         }
     }
 
@@ -149,5 +172,23 @@ impl Shape {
             Self::Cylinder(cylinder) => cylinder.bounds(),
             Self::Mesh(mesh) => mesh.bounds(),
         }
+    }
+}
+
+impl Divided for Shape {
+    fn patches(&self, edge_m: f64) -> Result<Patches> {
+        self.divided().patches(edge_m)
+    }
+
+    fn count(&self, patches: &Patches) -> Option<u64> {
+        self.divided().count(patches)
+    }
+
+    fn at(&self, patches: &Patches, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
+        self.divided().at(patches, point_m, inward)
+    }
+
+    fn patch(&self, patches: &Patches, number: u64) -> Patch {
+        self.divided().patch(patches, number)
     }
 }

@@ -2,7 +2,6 @@
 
 mod books;
 mod machine;
-mod points;
 mod surface;
 
 use std::sync::Arc;

@@ -30,6 +30,7 @@ mod yielding;
 pub use block::{BLOCK, BondBlock, Column};
 pub use histories::Histories;
 use histories::NewBond;
+use law::Source;
 pub use law::{BondLaw, BondRule};
 use stored::frame_between;
 pub(crate) use stored::{StoredBond, sign};
@@ -360,16 +361,16 @@ impl Bonds {
     /// Forces of bond `at`, which must not be broken, on its ends.
     pub fn forces(&self, at: usize, poses: &[Pose]) -> BondForces {
         let stiffness = self.stiffness(at);
-        match self.rules[self.rule_of(at)].law {
-            BondLaw::FlatJoint(_) => {
+        match self.rules[self.rule_of(at)].law.source() {
+            Source::Elements => {
                 let elements = &self.histories.joints[at].elements;
                 return self.joint_forces(at, elements, &self.ends_of(at, poses));
             }
-            BondLaw::Incremental => {
+            Source::Sums => {
                 let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
                 return incremental::bond_forces(&stiffness, &self.histories.sums[at], &(b - a));
             }
-            BondLaw::Elastic | BondLaw::ElastoPlastic(_) | BondLaw::Softening { .. } => {}
+            Source::Positions => {}
         }
         let stiffness = self.stiffness_now(at, poses);
         total::bond_forces(&stiffness, &self.direction(at), &self.ends_of(at, poses))

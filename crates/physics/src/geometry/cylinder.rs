@@ -1,5 +1,7 @@
 //! A solid cylinder with flat ends.
 
+use std::f64::consts::TAU;
+
 use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -21,6 +23,9 @@ pub struct Cylinder {
 const SIDE: u32 = 0;
 const ENDS: [u32; 2] = [1, 2];
 const RIMS: [u32; 2] = [3, 4];
+/// Rings of points along it, less one, and points on each of them.
+const RINGS: usize = 16;
+const ROUND: usize = 16;
 
 impl Cylinder {
     /// The cylinder between the middles of its two ends, m; refuses one without an inside.
@@ -123,6 +128,22 @@ impl Cylinder {
             .map(|a| self.radius_m * (1.0 - a * a).max(0.0).sqrt());
         let points = [self.start - half, self.start + half, end - half, end + half];
         Bounds::of(points)
+    }
+
+    /// Points on its side and rims, and the middles of its ends, m.
+    pub(super) fn surface_points_m(&self) -> Vec<[f64; 3]> {
+        let [from, to] = self.ends_m().map(Vector3::from);
+        let along = to - from;
+        let across = along.cross(&Vector3::ith(along.iamin(), 1.0)).normalize();
+        let other = along.normalize().cross(&across);
+        let rings = (0..=RINGS).flat_map(|ring| {
+            let centre = from + ring as f64 / RINGS as f64 * along;
+            (0..ROUND).map(move |k| {
+                let (sine, cosine) = (TAU * k as f64 / ROUND as f64).sin_cos();
+                centre + self.radius_m * (cosine * across + sine * other)
+            })
+        });
+        rings.chain([from, to]).map(Into::into).collect()
     }
 }
 

@@ -83,6 +83,8 @@ pub struct MeshContent {
     /// Corners.
     pub corners: u32,
 }
+/// Number of points on the surface that is aimed at.
+const POINTS: usize = 1000;
 
 impl Mesh {
     /// A surface as read from a file.
@@ -318,6 +320,23 @@ impl Mesh {
     fn feature(&self, touch: &Touch) -> u32 {
         let [triangle, region] = [touch.feature / REGIONS, touch.feature % REGIONS];
         self.of_regions[triangle as usize][region as usize]
+    }
+
+    /// Points of a grid on each triangle, or the corners of some of very many, m.
+    pub(super) fn surface_points_m(&self) -> Vec<[f64; 3]> {
+        let pieces = (POINTS / self.content.triangles).isqrt().max(1);
+        let every = (3 * self.content.triangles).div_ceil(3 * POINTS);
+        let share = 1.0 / pieces as f64;
+        let mut points = Vec::new();
+        for corners in self.corners_m().step_by(every) {
+            for one in 0..=pieces {
+                for two in 0..=pieces - one {
+                    let parts = [one, two, pieces - one - two].map(|part| share * part as f64);
+                    points.push([0, 1, 2].map(|k| (0..3).map(|n| parts[n] * corners[n][k]).sum()));
+                }
+            }
+        }
+        points
     }
 }
 

@@ -11,7 +11,10 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::{Cylinder, Mesh, Plane, Shape, SolidBox};
+use super::cylinder::Cylinder;
+use super::mesh::Mesh;
+use super::plane::Plane;
+use super::solid_box::SolidBox;
 
 /// Most patches of a box, a cylinder or the part of a plane that bodies can reach.
 pub const MOST_PATCHES: f64 = 1e6;
@@ -27,7 +30,25 @@ pub struct Patches {
     edge_m: f64,
     /// Number of patches: of a box along each axis, of a cylinder around and along it; 0 for
     /// others.
-    counts: [u64; 3],
+    pub(super) counts: [u64; 3],
+}
+
+/// A shape whose surface is divided into patches.
+pub trait Divided {
+    /// Its patches with edges of at most `edge_m`, m.
+    ///
+    /// # Errors
+    /// More than [`MOST_PATCHES`] of them.
+    fn patches(&self, edge_m: f64) -> Result<Patches>;
+
+    /// See [`Patches::count`].
+    fn count(&self, patches: &Patches) -> Option<u64>;
+
+    /// See [`Patches::at`].
+    fn at(&self, patches: &Patches, point_m: [f64; 3], inward: [f64; 3]) -> u64;
+
+    /// See [`Patches::patch`].
+    fn patch(&self, patches: &Patches, number: u64) -> Patch;
 }
 
 /// One patch, in the wall's own frame.
@@ -50,83 +71,32 @@ impl Patches {
     ///
     /// # Errors
     /// More than [`MOST_PATCHES`] patches of a box or a cylinder.
-    pub fn new(shape: &Shape, edge_m: f64) -> Result<Self> {
-        let parts = |length_m: f64| (length_m / edge_m).ceil().max(1.0);
-        let (edge_m, counts) = match shape {
-            Shape::Plane(_) => (edge_m, [0.0; 3]),
-            Shape::Mesh(_) => (0.0, [0.0; 3]),
-            Shape::Box(solid) => {
-                let bounds = solid.bounds();
-                let sides = [0, 1, 2].map(|k| bounds.high[k] - bounds.low[k]);
-                let [x, y, z] = sides.map(parts);
-                refuse_many(edge_m, 2.0 * (x * y + y * z + z * x))?;
-                (0.0, [x, y, z])
-            }
-            Shape::Cylinder(pin) => {
-                let around = parts(TAU * pin.radius_m()).max(FEWEST_AROUND);
-                let along = parts(axis_of(pin).1);
-                refuse_many(edge_m, around * along + 2.0)?;
-                (0.0, [around, along, 0.0])
-            }
-        };
-        Ok(Self {
-            edge_m,
-            counts: counts.map(|count| count as u64),
-        })
+    pub fn new(shape: &dyn Divided, edge_m: f64) -> Result<Self> {
+        shape.patches(edge_m)
     }
 
     /// Number of patches. None: a plane is infinite.
-    pub fn count(&self, shape: &Shape) -> Option<u64> {
-        let [x, y, z] = self.counts;
-        match shape {
-            Shape::Plane(_) => None,
-            Shape::Box(_) => Some(2 * (x * y + y * z + z * x)),
-            Shape::Cylinder(_) => Some(x * y + 2),
-            Shape::Mesh(mesh) => Some(mesh.content.triangles as u64),
-        }
+    pub fn count(&self, shape: &dyn Divided) -> Option<u64> {
+        shape.count(self)
     }
 
     /// Number of the patch at a point of the surface, m, where `inward` is the unit vector into the
     /// wall. Numbers are below [`Self::count`], those of a plane below 2^64.
-    pub fn at(&self, shape: &Shape, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
-        match shape {
-            Shape::Plane(plane) => self.at_plane(plane, point_m),
-            Shape::Box(solid) => self.at_box(solid, point_m, inward),
-            Shape::Cylinder(pin) => self.at_cylinder(pin, point_m, inward),
-            Shape::Mesh(mesh) => u64::from(mesh.nearest_triangle(point_m)),
-        }
+    pub fn at(&self, shape: &dyn Divided, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
+        shape.at(self, point_m, inward)
     }
 
     /// The patch of this number.
-    pub fn patch(&self, shape: &Shape, number: u64) -> Patch {
-        match shape {
-            Shape::Plane(plane) => self.patch_of_plane(plane, number),
-            Shape::Box(solid) => self.patch_of_box(solid, number),
-            Shape::Cylinder(pin) => self.patch_of_cylinder(pin, number),
-            Shape::Mesh(mesh) => patch_of_mesh(mesh, number),
+    pub fn patch(&self, shape: &dyn Divided, number: u64) -> Patch {
+        shape.patch(self, number)
+    }
+
+    /// These numbers of patches.
+    pub(super) fn of_counts(counts: [f64; 3]) -> Self {
+        Self {
+            edge_m: 0.0,
+            counts: counts.map(|count| count as u64),
         }
-    }
-
-    fn at_plane(&self, plane: &Plane, point_m: [f64; 3]) -> u64 {
-        let from = Vector3::from(point_m) - Vector3::from(plane.point_m());
-        let square = across(&plane.normal().into()).map(|axis| {
-            let place = (from.dot(&axis) / self.edge_m).floor();
-            // Limited to 32 bits by the conversion.
-            (i64::from(place as i32) + MIDDLE) as u64
-        });
-        (square[0] << 32) | square[1]
-    }
-
-    fn patch_of_plane(&self, plane: &Plane, number: u64) -> Patch {
-        let normal = Vector3::from(plane.normal());
-        let [u, v] = across(&normal);
-        let place = |bits: u64| (bits as i64 - MIDDLE) as f64;
-        let [i, j] = [place(number >> 32), place(number & 0xFFFF_FFFF)];
-        let point = |i: f64, j: f64| Vector3::from(plane.point_m()) + (u * i + v * j) * self.edge_m;
-        rectangle(
-            normal,
-            [[i, j], [i + 1.0, j], [i + 1.0, j + 1.0], [i, j + 1.0]].map(|[i, j]| point(i, j)),
-        )
     }
 
     /// The two axes of a face of a box that is across axis `k`, and the patches along them.
@@ -134,8 +104,58 @@ impl Patches {
         let axes = [(k + 1) % 3, (k + 2) % 3];
         (axes, axes.map(|axis| self.counts[axis]))
     }
+}
 
-    fn at_box(&self, solid: &SolidBox, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
+impl Divided for Plane {
+    fn patches(&self, edge_m: f64) -> Result<Patches> {
+        Ok(Patches {
+            edge_m,
+            ..Patches::default()
+        })
+    }
+
+    fn count(&self, _patches: &Patches) -> Option<u64> {
+        None
+    }
+
+    fn at(&self, patches: &Patches, point_m: [f64; 3], _inward: [f64; 3]) -> u64 {
+        let from = Vector3::from(point_m) - Vector3::from(self.point_m());
+        let square = across(&self.normal().into()).map(|axis| {
+            let place = (from.dot(&axis) / patches.edge_m).floor();
+            // Limited to 32 bits by the conversion.
+            (i64::from(place as i32) + MIDDLE) as u64
+        });
+        (square[0] << 32) | square[1]
+    }
+
+    fn patch(&self, patches: &Patches, number: u64) -> Patch {
+        let normal = Vector3::from(self.normal());
+        let [u, v] = across(&normal);
+        let place = |bits: u64| (bits as i64 - MIDDLE) as f64;
+        let [i, j] = [place(number >> 32), place(number & 0xFFFF_FFFF)];
+        let point =
+            |i: f64, j: f64| Vector3::from(self.point_m()) + (u * i + v * j) * patches.edge_m;
+        rectangle(
+            normal,
+            [[i, j], [i + 1.0, j], [i + 1.0, j + 1.0], [i, j + 1.0]].map(|[i, j]| point(i, j)),
+        )
+    }
+}
+
+impl Divided for SolidBox {
+    fn patches(&self, edge_m: f64) -> Result<Patches> {
+        let bounds = self.bounds();
+        let [x, y, z] = [0, 1, 2].map(|k| parts(bounds.high[k] - bounds.low[k], edge_m));
+        refuse_many(edge_m, 2.0 * (x * y + y * z + z * x))?;
+        Ok(Patches::of_counts([x, y, z]))
+    }
+
+    fn count(&self, patches: &Patches) -> Option<u64> {
+        let [x, y, z] = patches.counts;
+        Some(2 * (x * y + y * z + z * x))
+    }
+
+    fn at(&self, patches: &Patches, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
         let mut across = 0;
         for k in 1..3 {
             if inward[k].abs() > inward[across].abs() {
@@ -143,24 +163,24 @@ impl Patches {
             }
         }
         let before = (0..across).map(|k| {
-            let (_, [a, b]) = self.face(k);
+            let (_, [a, b]) = patches.face(k);
             2 * a * b
         });
-        let (axes, [along_a, along_b]) = self.face(across);
+        let (axes, [along_a, along_b]) = patches.face(across);
         let is_high = u64::from(inward[across] < 0.0);
-        let bounds = solid.bounds();
+        let bounds = self.bounds();
         let [i, j] = axes.map(|axis| {
             let (low, high) = (bounds.low[axis], bounds.high[axis]);
-            part((point_m[axis] - low) / (high - low), self.counts[axis])
+            part((point_m[axis] - low) / (high - low), patches.counts[axis])
         });
         before.sum::<u64>() + is_high * along_a * along_b + j * along_a + i
     }
 
-    fn patch_of_box(&self, solid: &SolidBox, number: u64) -> Patch {
+    fn patch(&self, patches: &Patches, number: u64) -> Patch {
         let mut left = number;
         let mut k = 0;
         let ([a, b], [along_a, along_b]) = loop {
-            let face = self.face(k);
+            let face = patches.face(k);
             let of_both = 2 * face.1[0] * face.1[1];
             if left < of_both || k == 2 {
                 break face;
@@ -171,7 +191,7 @@ impl Patches {
         let is_high = left >= along_a * along_b;
         let left = left % (along_a * along_b);
         let [i, j] = [left % along_a, left / along_a];
-        let bounds = solid.bounds();
+        let bounds = self.bounds();
         let side = if is_high { &bounds.high } else { &bounds.low };
         let corner = |i: u64, j: u64| {
             let mut point = Vector3::zeros();
@@ -196,32 +216,46 @@ impl Patches {
         };
         rectangle(normal, corners)
     }
+}
 
-    fn at_cylinder(&self, pin: &Cylinder, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
-        let [around, along, _] = self.counts;
-        let (axis, length_m) = axis_of(pin);
+impl Divided for Cylinder {
+    fn patches(&self, edge_m: f64) -> Result<Patches> {
+        let around = parts(TAU * self.radius_m(), edge_m).max(FEWEST_AROUND);
+        let along = parts(axis_of(self).1, edge_m);
+        refuse_many(edge_m, around * along + 2.0)?;
+        Ok(Patches::of_counts([around, along, 0.0]))
+    }
+
+    fn count(&self, patches: &Patches) -> Option<u64> {
+        let [around, along, _] = patches.counts;
+        Some(around * along + 2)
+    }
+
+    fn at(&self, patches: &Patches, point_m: [f64; 3], inward: [f64; 3]) -> u64 {
+        let [around, along, _] = patches.counts;
+        let (axis, length_m) = axis_of(self);
         let out = -axis.dot(&Vector3::from(inward));
         if out.abs() > FRAC_1_SQRT_2 {
             return around * along + u64::from(out > 0.0);
         }
-        let from = Vector3::from(point_m) - Vector3::from(pin.ends_m()[0]);
+        let from = Vector3::from(point_m) - Vector3::from(self.ends_m()[0]);
         let [u, v] = across(&axis).map(|radial| from.dot(&radial));
         let angle = v.atan2(u).rem_euclid(TAU);
         part(from.dot(&axis) / length_m, along) * around + part(angle / TAU, around)
     }
 
-    fn patch_of_cylinder(&self, pin: &Cylinder, number: u64) -> Patch {
-        let [around, along, _] = self.counts;
-        let (axis, length_m) = axis_of(pin);
+    fn patch(&self, patches: &Patches, number: u64) -> Patch {
+        let [around, along, _] = patches.counts;
+        let (axis, length_m) = axis_of(self);
         let [u, v] = across(&axis);
-        let radius_m = pin.radius_m();
+        let radius_m = self.radius_m();
         let radial = |i: f64| {
             let (sine, cosine) = (TAU * i / around as f64).sin_cos();
             u * cosine + v * sine
         };
         let point = |i: f64, j: f64, radius_m: f64| {
             let at = axis * (length_m * j / along as f64) + radial(i) * radius_m;
-            (Vector3::from(pin.ends_m()[0]) + at).into()
+            (Vector3::from(self.ends_m()[0]) + at).into()
         };
         if let Some(end) = number.checked_sub(around * along) {
             let j = [0, along][(end as usize).min(1)] as f64;
@@ -243,6 +277,32 @@ impl Patches {
             normal: radial(i + 0.5).into(),
             area_m2: TAU * radius_m / around as f64 * length_m / along as f64,
             corners_m: corners.map(|[i, j]| point(i, j, radius_m)).into(),
+        }
+    }
+}
+
+impl Divided for Mesh {
+    fn patches(&self, _edge_m: f64) -> Result<Patches> {
+        Ok(Patches::default())
+    }
+
+    fn count(&self, _patches: &Patches) -> Option<u64> {
+        Some(self.content.triangles as u64)
+    }
+
+    fn at(&self, _patches: &Patches, point_m: [f64; 3], _inward: [f64; 3]) -> u64 {
+        u64::from(self.nearest_triangle(point_m))
+    }
+
+    fn patch(&self, _patches: &Patches, number: u64) -> Patch {
+        let corners = self.triangle_m(number as usize).map(Vector3::from);
+        let [a, b, c] = corners;
+        let twice = (b - a).cross(&(c - a));
+        Patch {
+            centre_m: ((a + b + c) / 3.0).into(),
+            normal: twice.normalize().into(),
+            area_m2: 0.5 * twice.norm(),
+            corners_m: corners.map(Into::into).into(),
         }
     }
 }
@@ -271,18 +331,6 @@ pub fn refuse_many(edge_m: f64, patches: f64) -> Result<()> {
     ))
 }
 
-fn patch_of_mesh(mesh: &Mesh, number: u64) -> Patch {
-    let corners = mesh.triangle_m(number as usize).map(Vector3::from);
-    let [a, b, c] = corners;
-    let twice = (b - a).cross(&(c - a));
-    Patch {
-        centre_m: ((a + b + c) / 3.0).into(),
-        normal: twice.normalize().into(),
-        area_m2: 0.5 * twice.norm(),
-        corners_m: corners.map(Into::into).into(),
-    }
-}
-
 fn rectangle(normal: Vector3<f64>, corners: [Vector3<f64>; 4]) -> Patch {
     let [a, b, c, d] = corners;
     Patch {
@@ -293,8 +341,13 @@ fn rectangle(normal: Vector3<f64>, corners: [Vector3<f64>; 4]) -> Patch {
     }
 }
 
+/// Number of parts of at most `edge_m` of a length, m.
+pub(super) fn parts(length_m: f64, edge_m: f64) -> f64 {
+    (length_m / edge_m).ceil().max(1.0)
+}
+
 /// Number of the part at a fraction of a length that is divided into `parts`.
-fn part(fraction: f64, parts: u64) -> u64 {
+pub(super) fn part(fraction: f64, parts: u64) -> u64 {
     // Below 0 is 0, by the conversion.
     ((fraction * parts as f64) as u64).min(parts - 1)
 }
@@ -316,10 +369,10 @@ fn across(normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test stops where it fails")]
 mod tests {
-    use super::*;
+    use crate::geometry::patches::*;
 
     /// Shapes with patches of 2 m, and the areas of their surfaces, m2.
-    fn shapes() -> [(Shape, f64); 3] {
+    fn shapes() -> [(Box<dyn Divided>, f64); 3] {
         let solid = SolidBox::new([-1.0, 0.0, 2.0], [4.0, 3.0, 9.0]).unwrap();
         let pin = Cylinder::new([[1.0, 2.0, 3.0], [4.0, 6.0, 3.0]], 2.0).unwrap();
         let corners = [[0.0; 3], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]];
@@ -327,23 +380,23 @@ mod tests {
         let mesh = Mesh::new(&corners, &tetrahedron).unwrap();
         let of_mesh = 13.5 + 4.5 * 3.0_f64.sqrt();
         [
-            (Shape::Box(solid), 2.0 * (5.0 * 3.0 + 3.0 * 7.0 + 7.0 * 5.0)),
-            (Shape::Cylinder(pin), TAU * 2.0 * (5.0 + 2.0)),
-            (Shape::Mesh(mesh), of_mesh),
+            (Box::new(solid), 2.0 * (5.0 * 3.0 + 3.0 * 7.0 + 7.0 * 5.0)),
+            (Box::new(pin), TAU * 2.0 * (5.0 + 2.0)),
+            (Box::new(mesh), of_mesh),
         ]
     }
 
     #[test]
     fn patches_cover_a_shape_and_are_found_at_their_middles() {
         for (shape, area_m2) in shapes() {
-            let patches = Patches::new(&shape, 2.0).unwrap();
-            let count = patches.count(&shape).unwrap();
+            let patches = Patches::new(&*shape, 2.0).unwrap();
+            let count = patches.count(&*shape).unwrap();
             let mut sum_m2 = 0.0;
             for number in 0..count {
-                let patch = patches.patch(&shape, number);
+                let patch = patches.patch(&*shape, number);
                 let inward = patch.normal.map(|n| -n);
                 assert_eq!(
-                    patches.at(&shape, patch.centre_m, inward),
+                    patches.at(&*shape, patch.centre_m, inward),
                     number,
                     "{patch:?}"
                 );
@@ -367,14 +420,13 @@ mod tests {
     fn a_plane_has_squares_on_all_sides_of_its_point() {
         let plane = Plane::new([1.0, 2.0, 3.0], [1.0, 2.0, -2.0]).unwrap();
         let [u, v] = across(&plane.normal().into());
-        let shape = Shape::Plane(plane);
-        let patches = Patches::new(&shape, 2.0).unwrap();
-        assert_eq!(patches.count(&shape), None);
+        let patches = Patches::new(&plane, 2.0).unwrap();
+        assert_eq!(patches.count(&plane), None);
         let mut numbers = Vec::new();
         for [i, j] in [[-2.5, 0.5], [-0.5, -0.5], [0.5, 0.5], [7.5, -3.5]] {
             let middle = Vector3::from(plane.point_m()) + (u * i + v * j) * 2.0;
-            let number = patches.at(&shape, middle.into(), plane.normal().map(|n| -n));
-            let patch = patches.patch(&shape, number);
+            let number = patches.at(&plane, middle.into(), plane.normal().map(|n| -n));
+            let patch = patches.patch(&plane, number);
             assert!((Vector3::from(patch.centre_m) - middle).norm() < 1e-12);
             assert!((patch.area_m2 - 4.0).abs() < 1e-12);
             assert_runs_around(&patch);
@@ -387,8 +439,8 @@ mod tests {
     #[test]
     fn a_patch_larger_than_the_wall_is_each_of_its_faces() {
         let (shape, _) = &shapes()[0];
-        let patches = Patches::new(shape, 100.0).unwrap();
-        assert_eq!(patches.count(shape), Some(6));
-        assert!(Patches::new(shape, 1e-3).is_err());
+        let patches = Patches::new(&**shape, 100.0).unwrap();
+        assert_eq!(patches.count(&**shape), Some(6));
+        assert!(Patches::new(&**shape, 1e-3).is_err());
     }
 }

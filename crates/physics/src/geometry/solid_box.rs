@@ -21,6 +21,8 @@ pub struct SolidBox {
 /// The feature if the centre is between the sides along all axes.
 const MIDDLE: u32 = 13;
 const STRIDES: [u32; 3] = [1, 3, 9];
+/// Pieces of an edge, between points on the surface.
+const PIECES: usize = 8;
 
 impl SolidBox {
     /// The box between its smallest and its largest corner, m; refuses one without an inside.
@@ -87,6 +89,21 @@ impl SolidBox {
             low: self.low,
             high: self.high,
         }
+    }
+
+    /// Its corners, and points on its edges and faces, m.
+    pub(super) fn surface_points_m(&self) -> Vec<[f64; 3]> {
+        let at = |k: usize, part: usize| {
+            let share = part as f64 / PIECES as f64;
+            self.low[k] + share * (self.high[k] - self.low[k])
+        };
+        let stops = PIECES + 1;
+        let parts = (0..stops.pow(3)).map(|n| [n % stops, n / stops % stops, n / stops.pow(2)]);
+        let is_outside = |parts: &[usize; 3]| parts.iter().any(|part| part % PIECES == 0);
+        let outside = parts.filter(is_outside);
+        outside
+            .map(|parts| [0, 1, 2].map(|k| at(k, parts[k])))
+            .collect()
     }
 }
 

@@ -13,8 +13,6 @@ use dem_physics::geometry::{Bounds, Frame};
 use dem_physics::rigid::turn;
 use dem_physics::rotation::{numbers, rotation};
 
-use super::points::points_of;
-
 /// Fewest steps in a period. A sine that is followed by so many straight pieces is off by 1.2 % of
 /// its amplitude.
 const STEPS_IN_PERIOD: f64 = 20.0;
@@ -189,7 +187,7 @@ pub fn stroke_m(wall: &Wall, now_s: f64) -> Option<f64> {
     let moments = moments_s(motion).into_iter();
     let frames: Vec<Frame> = moments.map(|at_s| frame_at(wall, [now_s, at_s])).collect();
     let mut stroke_m = frames.first().map(|_| 0.0)?;
-    for point in points_of(&wall.model.shape) {
+    for point in wall.model.shape.surface_points_m() {
         let places: Vec<[f64; 3]> = frames.iter().map(|f| f.to_space(point)).collect();
         for (k, place) in places.iter().enumerate() {
             let ways = places[..k].iter().map(|other| Bounds::of([*place, *other]));
@@ -253,7 +251,7 @@ struct Seen<'a> {
 
 impl<'a> Seen<'a> {
     fn new(wall: &'a Wall) -> Self {
-        let points = points_of(&wall.model.shape);
+        let points = wall.model.shape.surface_points_m();
         let swept = swept(wall);
         Self {
             wall,

@@ -53,13 +53,13 @@ pub(crate) fn carrying_velocity_m_s(wall: &Wall, velocity_m_s: [f64; 3]) -> Opti
 }
 
 /// Normals in space of the flat faces along which the surface of a belt moves, one for each pair of
-/// opposite ones.
+/// opposite ones: of planes and boxes only.
 fn faces_along(wall: &Wall) -> Vec<Vector3<f64>> {
     let belt = Vector3::from(wall.model.surface_velocity_m_s);
     let normals = match &wall.model.shape {
         Shape::Plane(plane) => vec![plane.normal()],
         Shape::Box(_) => vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        Shape::Cylinder(_) | Shape::Mesh(_) => Vec::new(),
+        _ => Vec::new(),
     };
     let in_space = normals.into_iter();
     let in_space = in_space.map(|normal| Vector3::from(wall.frame.direction_to_space(normal)));
@@ -90,7 +90,7 @@ impl BeltFace {
                 };
                 Some((solid.bounds(), axis, side(axis) == 2))
             }
-            Shape::Cylinder(_) | Shape::Mesh(_) => return None,
+            _ => return None,
         };
         let belt = Vector3::from(wall.model.surface_velocity_m_s);
         let along_m_s = [0, 1, 2].map(|k| {

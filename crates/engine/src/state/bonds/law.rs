@@ -25,6 +25,17 @@ pub enum BondLaw {
     FlatJoint(FlatJointLaw),
 }
 
+/// What the forces of a bond follow from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// The present positions, by the total formulation.
+    Positions,
+    /// Loads that are summed step by step.
+    Sums,
+    /// The elements of its section.
+    Elements,
+}
+
 impl BondLaw {
     /// Yield strengths and hardening. None: the law has none.
     pub fn plasticity(&self) -> Option<Plasticity> {
@@ -49,6 +60,26 @@ impl BondLaw {
         match self {
             Self::FlatJoint(law) => Some(*law),
             _ => None,
+        }
+    }
+
+    /// What the forces of a bond follow from.
+    pub(super) fn source(&self) -> Source {
+        match self {
+            Self::Elastic | Self::ElastoPlastic(_) | Self::Softening { .. } => Source::Positions,
+            Self::Incremental => Source::Sums,
+            Self::FlatJoint(_) => Source::Elements,
+        }
+    }
+
+    /// The key of a kind of bonds that asks for this law. None: no key does.
+    pub fn key(&self) -> Option<&'static str> {
+        match self {
+            Self::Elastic => None,
+            Self::Incremental => Some("formulation"),
+            Self::ElastoPlastic(_) => Some("plasticity"),
+            Self::Softening { .. } => Some("failure.fracture_energy"),
+            Self::FlatJoint(_) => Some("model"),
         }
     }
 
