@@ -73,7 +73,6 @@ use self::measure::measurement::Measurement;
 use self::measure::refused::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::placement::placed;
-use self::quality::Quality;
 use self::rules::{doubts, rules};
 use self::sieve_sizes::scale_to_sieves;
 use self::size_correction::corrected;
@@ -141,11 +140,8 @@ pub fn plan(
         .map(|(name, body)| (name.clone(), body.about.clone()))
         .collect();
     refuse_endless_fall(scene)?;
-    let Quality {
-        mut warnings,
-        notes: of_specimens,
-        coarse,
-    } = quality::of_bodies(scene, &read);
+    let quality = quality::of_bodies(scene, &read);
+    let mut warnings = quality.warnings;
     let ball_m = ball_m(scene, &read);
     let named = named_bodies(scene, &read);
     let unused_bonds = unused_bonds(scene, &read);
@@ -164,7 +160,7 @@ pub fn plan(
     start(scene, &groups, &bodies, &mut state)?;
     state.loads = loads(scene, &groups, &state.supports)?;
     let of_masses = masses::notes(scene, &masses);
-    let mut notes = [scene.notes.clone(), of_specimens, of_masses].concat();
+    let mut notes = [scene.notes.clone(), quality.notes, of_masses].concat();
     state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
     state.population.by_daughters = vec![0; templates.len()];
@@ -204,7 +200,7 @@ pub fn plan(
         masses,
         notes: told_once(notes, scene.bodies.keys()),
         warnings: told_once(warnings, scene.bodies.keys()),
-        coarse: told_once(coarse, scene.bodies.keys()),
+        coarse: told_once(quality.coarse, scene.bodies.keys()),
         forecast,
         inputs,
     })
