@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use dem_io::text::counted;
 use dem_io::units::{show_length, show_quantity, significant};
 use dem_laboratory::Statistic;
 
@@ -141,8 +142,7 @@ pub(crate) fn number_rows<'a>(
 pub(crate) fn verdict(warnings: usize) -> String {
     match warnings {
         0 => "sound".to_owned(),
-        1 => "doubtful: 1 warning".to_owned(),
-        many => format!("doubtful: {many} warnings"),
+        many => format!("doubtful: {}", counted(many, "warning")),
     }
 }
 

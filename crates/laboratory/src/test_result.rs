@@ -2,10 +2,6 @@
 
 mod text;
 
-use dem_io::units::{
-    Dimension, ENERGY, ENERGY_PER_MASS, FORCE, LENGTH, RATE, STIFFNESS as STIFFNESS_OF, STRESS,
-    TIME,
-};
 use dem_physics::bond::failure::Cause;
 use serde::{Deserialize, Serialize};
 
@@ -29,32 +25,6 @@ pub const UNBOOKED: &str = "energy unaccounted for";
 pub const T10: &str = "t10";
 /// Share of the mass of the spheres that are smaller than that: t10 cannot be larger.
 pub const LARGEST_T10: &str = "largest possible t10";
-
-/// The dimension of a figure of a test by its name. None: it is a plain number.
-pub fn dimension_of(figure: &str) -> Option<&'static Dimension> {
-    let ends: [(&str, &Dimension); 8] = [
-        ("strength", &STRESS),
-        ("stiffness", &STIFFNESS_OF),
-        ("force", &FORCE),
-        ("travel at failure", &LENGTH),
-        ("strain rate", &RATE),
-        ("duration", &TIME),
-        ("specific absorbed energy", &ENERGY_PER_MASS),
-        ("absorbed energy", &ENERGY),
-    ];
-    let begins = [
-        "modulus",
-        "specimen modulus",
-        "stress",
-        "axial stress",
-        "largest stress",
-    ];
-    if begins.iter().any(|word| figure.starts_with(word)) {
-        return Some(&STRESS);
-    }
-    let found = ends.iter().find(|(word, _)| figure.ends_with(word));
-    found.map(|(_, dimension)| *dimension)
-}
 
 /// The first bond that broke.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

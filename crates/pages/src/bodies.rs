@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use dem_io::Body;
-use dem_io::body::read_body;
+use dem_io::body::{body_summary, read_body};
 use dem_io::units::significant;
 
 use crate::bench::{Bench, Failed, ONE_THREAD, root};
@@ -91,24 +91,20 @@ fn file_of(bar: &Bar) -> std::path::PathBuf {
 /// The tension test of a bar, slow, with small steps.
 fn scene_of(bar: &Bar) -> Result<String, Failed> {
     let body: Body = read_body(&file_of(bar))?;
-    let along = |place: &[f64; 3]| place[bar.axis];
-    let ends = body.positions.iter().zip(&body.radii);
-    let (low_m, high_m) = ends.fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(low, high), (at, r)| (low.min(along(at) - r), high.max(along(at) + r)),
-    );
+    let its = body_summary(&body);
+    let [low_m, high_m] = [its.box_min_m, its.box_max_m].map(|corner| corner[bar.axis]);
     let grip_m = GRIP * body.mean_diameter_m();
     let text = std::fs::read_to_string(root().join("data").join(bar.bonds))?;
     let material = if bar.body == "stalk" { "stalk" } else { "cake" };
     let axis = ["x", "y", "z"][bar.axis];
+    let materials = tables(&text, "[materials.");
     let mut scene = format!(
-        "version = 1\n[run]\nlocal_damping = 0.02\nsafety_factor = 0.3\n{}{}\
+        "version = 1\n[run]\nlocal_damping = 0.02\nsafety_factor = 0.3\n{materials}{}\
          [bodies.bar]\nfile = {:?}\nmaterial = \"{material}\"\nbonds = \"{material}\"\n",
-        tables(&text, "[materials."),
         tables(&text, "[bonds."),
         file_of(bar)
     );
-    if !tables(&text, "[materials.").contains("density") {
+    if !materials.contains("density") {
         scene.push_str("body_density = \"2050 kg/m3\"\n");
     }
     let far = [-1.0, 1.0];

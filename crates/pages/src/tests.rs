@@ -3,10 +3,14 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
-use dem_scene::read_scene;
+use dem_io::Body;
+use dem_results::folder::{Existing, ResultsFolder};
+use dem_run::{RunSettings, plan, run};
+use dem_scene::{read_scene, scene_from_text};
 
-use crate::bench::root;
+use crate::bench::{Failed, Run, finished, root};
 use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
@@ -53,6 +57,31 @@ fn pages() -> Vec<PathBuf> {
         pages.extend(names.filter(|name| name.extension().is_some_and(|end| end == "md")));
     }
     pages
+}
+
+/// What is read from a run, in this process, of a scene of the repository with these `--set` values
+/// and this body.
+pub(crate) fn in_place<T>(
+    scene: &str,
+    keys: &[String],
+    (name, body): (&str, &Body),
+    read: impl FnOnce(&Run) -> Result<T, Failed>,
+) -> Result<T, Failed> {
+    let text = std::fs::read_to_string(root().join(scene))?;
+    let scene = scene_from_text(&text, scene, keys)?;
+    let plan = plan(&scene, [(name.to_owned(), body.clone())].into(), 1, false)?;
+    let parent = tempfile::tempdir()?;
+    let folder = ResultsFolder::create(&parent.path().join("out"), Existing::Refuse)?;
+    let settings = RunSettings {
+        folder: Some(&folder),
+        resume: None,
+        test: None,
+        setup: None,
+        threads: 1,
+        interrupted: &AtomicBool::new(false),
+    };
+    run(plan, &scene, settings, &|_| ())?;
+    read(&finished(&parent.path().join("out")).unwrap())
 }
 
 /// The words of the tables of a page that this program writes, in their order.

@@ -8,13 +8,13 @@
 
 use std::ops::RangeInclusive;
 
-use dem_io::units::significant;
-use dem_laboratory::Specimen;
+use dem_io::units::{self, Dimension, significant};
+use dem_laboratory::{Specimen, TestType};
 use dem_scene::{Bars, Gauges, Weight};
 
 use super::curve::rows_of;
 use super::evaluate::{
-    FAILURE_FORCE, LARGEST_FORCE, STRENGTH, TestInput, first_broken, without_figures,
+    FAILURE_FORCE, LARGEST_FORCE, RESULTS, STRENGTH, TestInput, first_broken, without_figures,
 };
 use super::record::{Record, Row};
 use dem_engine::state::loads::factor_at;
@@ -44,22 +44,31 @@ const J_KG_PER_KWH_T: f64 = 3600.0;
 /// Largest stress, Pa, of a body that did not break.
 pub const LARGEST_STRESS: &str = "largest stress";
 
-/// Names of the results of dynamic tests that a body can be calibrated to; each test has some of
-/// them.
-pub const DYNAMIC_RESULTS: [&str; 12] = [
-    STRENGTH,
-    FAILURE_FORCE,
-    LARGEST_FORCE,
-    LARGEST_STRESS,
-    STRAIN_RATE,
-    INCREASE_FACTOR,
-    "contact duration",
-    "absorbed energy",
-    "specific absorbed energy",
-    "rebound velocity",
-    "largest fragment",
-    T10,
+/// Names and dimensions of the results of dynamic tests that a body can be calibrated to; each test
+/// has some of them.
+const DYNAMIC_RESULTS: [(&str, &Dimension); 12] = [
+    (STRENGTH, &units::STRESS),
+    (FAILURE_FORCE, &units::FORCE),
+    (LARGEST_FORCE, &units::FORCE),
+    (LARGEST_STRESS, &units::STRESS),
+    (STRAIN_RATE, &units::RATE),
+    (INCREASE_FACTOR, &units::NUMBER),
+    ("contact duration", &units::TIME),
+    ("absorbed energy", &units::ENERGY),
+    ("specific absorbed energy", &units::ENERGY_PER_MASS),
+    ("rebound velocity", &units::VELOCITY),
+    ("largest fragment", &units::NUMBER),
+    (T10, &units::NUMBER),
 ];
+
+/// Names and dimensions of the results that a test of this type can have.
+pub fn results_of(kind: TestType) -> &'static [(&'static str, &'static Dimension)] {
+    if kind.is_dynamic() {
+        &DYNAMIC_RESULTS
+    } else {
+        &RESULTS
+    }
+}
 
 /// Evaluates a dynamic test: its figures are those of its bars or its weight, and its travel has no
 /// play.

@@ -1,7 +1,7 @@
 //! Results of a test from force and displacement: stiffness, modulus, strength, position of the
 //! crack.
 
-use dem_io::units::show_quantity;
+use dem_io::units::{self, Dimension, show_quantity};
 use dem_scene::{BondKind, Test};
 
 use super::confined::{self, POISSON_RATIO, RESIDUAL, RESIDUAL_FRICTION};
@@ -364,26 +364,26 @@ const APART: &str = "area between the curves";
 /// Stress at that force according to the formula of the test.
 pub const STRENGTH: &str = "strength";
 
-/// Names of all results of quasi-static tests; each test has some of them.
-pub const RESULTS: [&str; 18] = [
-    STIFFNESS,
-    SPECIMEN_STIFFNESS,
-    EQ_18,
-    WITH_SHEAR,
-    BY_TRAVEL,
-    MODULUS,
-    FAILURE_FORCE,
-    LARGEST_FORCE,
-    STRENGTH,
-    TRAVEL_AT_FAILURE,
-    APART,
-    POISSON_RATIO,
-    PEAK_AXIAL_STRESS,
-    RESIDUAL,
-    RESIDUAL_FRICTION,
-    PRESSURE_OFF,
-    ACROSS,
-    ALONG,
+/// Names and dimensions of all results of quasi-static tests; each test has some of them.
+pub(crate) const RESULTS: [(&str, &Dimension); 18] = [
+    (STIFFNESS, &units::STIFFNESS),
+    (SPECIMEN_STIFFNESS, &units::STIFFNESS),
+    (EQ_18, &units::STRESS),
+    (WITH_SHEAR, &units::STRESS),
+    (BY_TRAVEL, &units::STRESS),
+    (MODULUS, &units::STRESS),
+    (FAILURE_FORCE, &units::FORCE),
+    (LARGEST_FORCE, &units::FORCE),
+    (STRENGTH, &units::STRESS),
+    (TRAVEL_AT_FAILURE, &units::LENGTH),
+    (APART, &units::NUMBER),
+    (POISSON_RATIO, &units::NUMBER),
+    (PEAK_AXIAL_STRESS, &units::STRESS),
+    (RESIDUAL, &units::STRESS),
+    (RESIDUAL_FRICTION, &units::NUMBER),
+    (PRESSURE_OFF, &units::NUMBER),
+    (ACROSS, &units::STRESS),
+    (ALONG, &units::STRESS),
 ];
 
 /// Required bond parameters. Stresses and strains are proportional to modulus and strength of the

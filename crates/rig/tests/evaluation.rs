@@ -7,7 +7,7 @@ use dem_laboratory::TestType;
 use dem_laboratory::test_result::TestResult;
 use dem_laboratory::theory::{Beam, KAPPA};
 use dem_physics::bond::failure::Cause;
-use dem_rig::dynamic::evaluate_dynamic;
+use dem_rig::dynamic::{evaluate_dynamic, results_of};
 use dem_rig::evaluate::{TestInput, evaluate};
 use dem_rig::record::{BrokenBond, Record, Row};
 use dem_rig::setup::Setup;
@@ -123,7 +123,7 @@ fn evaluated_at(
     broken: bool,
 ) -> TestResult {
     let bonds = clay(SCENE);
-    evaluate(&TestInput {
+    with_known_units(evaluate(&TestInput {
         test,
         setup,
         record,
@@ -134,7 +134,7 @@ fn evaluated_at(
         broken,
         all_bonds: ALL_BONDS,
         pieces: None,
-    })
+    }))
 }
 
 fn clay(scene: &str) -> BondKind {
@@ -220,7 +220,7 @@ fn evaluated_dynamic(
     setup: &Setup,
     record: &Record,
 ) -> TestResult {
-    evaluate_dynamic(&TestInput {
+    with_known_units(evaluate_dynamic(&TestInput {
         test,
         setup,
         record,
@@ -231,7 +231,17 @@ fn evaluated_dynamic(
         broken: false,
         all_bonds: ALL_BONDS,
         pieces: None,
-    })
+    }))
+}
+
+/// A result whose figures have the dimensions that targets for them are read with.
+fn with_known_units(result: TestResult) -> TestResult {
+    for (name, dimension) in results_of(result.kind) {
+        for figure in result.figures.iter().filter(|figure| figure.name == *name) {
+            assert_eq!(figure.unit, dimension.si, "{figure:?}");
+        }
+    }
+    result
 }
 
 #[test]
@@ -369,7 +379,7 @@ fn a_body_that_holds_has_no_strength() {
     assert_near(result.figure("largest force"), 50.0);
     let [broken_bonds, all_bonds] = result.broken_bonds;
     assert_eq!((broken_bonds, all_bonds), (record.broken.len(), ALL_BONDS));
-    let text = result.to_string();
+    let text = result.text(&[]);
     let fraction = format!(
         "the load did not fall to half of its largest; {broken_bonds} of {ALL_BONDS} bonds broke"
     );

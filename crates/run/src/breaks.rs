@@ -32,11 +32,7 @@ impl Breaks {
 
     /// All broken bonds, and those since this time, s, or since at most the width of a bin before.
     pub(super) fn all_and_since(&self, time_s: f64) -> [u32; 2] {
-        let first = if self.bin_s > 0.0 {
-            (time_s / self.bin_s) as usize
-        } else {
-            0
-        };
+        let first = (time_s / self.bin_s) as usize;
         let late = self.bins.get(first..).unwrap_or_default();
         [self.bins.iter().sum(), late.iter().sum()]
     }

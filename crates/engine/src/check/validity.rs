@@ -14,8 +14,10 @@ use crate::state::events::REMOVED;
 /// Strain at the edge of a bond above which linear elasticity is doubtful: its error is of the same
 /// order.
 pub const LARGEST_STRAIN: f64 = 0.1;
-/// [Indentation](dem_physics::contact::kinematics::indentation) above which the contact laws are doubtful: the radius of Hertz's
-/// contact, which should be small, is then 0.55 of the sphere's.
+/// [Indentation] above which the contact laws are doubtful: the radius of Hertz's contact, which
+/// should be small, is then 0.55 of the sphere's.
+///
+/// [Indentation]: dem_physics::contact::kinematics::indentation
 pub const LARGEST_INDENTATION: f64 = 0.3;
 
 /// Warning that bonds are strained beyond the validity of their law, `where_`. None: they are not.

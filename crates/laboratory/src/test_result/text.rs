@@ -1,7 +1,5 @@
 //! Human-readable text on a test.
 
-use std::fmt;
-
 use dem_io::units::{show_quantity, significant};
 
 use super::{EQUILIBRIUM, LARGEST_T10, PRESSURE_OFF, STIFFNESS, T10, TestResult, UNBOOKED};
@@ -217,19 +215,25 @@ impl TestResult {
     }
 }
 
-impl fmt::Display for TestResult {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "test         {}", self.kind.name())?;
+impl TestResult {
+    /// Human-readable lines. Those of `unresolved` figures, by name, end with a `*`.
+    pub fn text(&self, unresolved: &[String]) -> String {
+        let mut text = format!("test         {}\n", self.kind.name());
         let tables = [&self.dimensions, &self.figures, &self.calibration];
         let names = tables.into_iter().flatten().map(|figure| figure.name.len());
         let width = names.max().unwrap_or_default();
         for figure in tables.into_iter().flatten() {
-            writeln!(f, "  {}", line(figure, width))?;
+            let mark = if unresolved.contains(&figure.name) {
+                "*"
+            } else {
+                ""
+            };
+            text += &format!("  {}{mark}\n", line(figure, width));
         }
-        for (name, text) in self.sentences() {
-            writeln!(f, "  {name:width$} {text}")?;
+        for (name, sentence) in self.sentences() {
+            text += &format!("  {name:width$} {sentence}\n");
         }
-        Ok(())
+        text
     }
 }
 

@@ -1,10 +1,11 @@
 //! What arrives below a plate against which lumps fly?
 
-use super::compare::{Answers, Quantity, Question, share};
-use super::spheres::{Lump, sieves};
+use dem_io::Body;
+
+use super::compare::{Quantity, Question, share};
+use super::spheres::Lump;
 use super::weight::sizes;
-use crate::bench::{Bench, Failed, ONE_THREAD, body, sets};
-use crate::cells::mean;
+use crate::bench::{Bench, Failed, Run};
 
 pub(super) const QUESTION: Question = Question {
     words: "resolution chute",
@@ -35,30 +36,10 @@ const RUNS: u32 = 4;
 
 /// Lumps that fly against a plate.
 pub(crate) fn chute(bench: &Bench) -> Result<(), Failed> {
-    let mut all = Vec::new();
-    for (bonds, across) in QUESTION.cases() {
-        let (mut values, mut times_s) = (vec![Vec::new(); 3], Vec::new());
-        let mut spheres = 0;
-        for number in 1..=RUNS {
-            let lump = Lump { across, number };
-            spheres = lump.packed(Some(bench))?.radii.len();
-            let mut keys = bonds.sets(across)?.to_vec();
-            keys.extend([sieves(across), format!("run.seed={number}")]);
-            let mut options = sets(&keys);
-            options.extend([ONE_THREAD.to_owned(), body("lump", &lump.file(bench))]);
-            let name = format!("chute-{}-{}", bonds.file_name(), lump.name());
-            let run = bench.run(&name, "tests/resolution/chute.toml", &options)?;
-            let [d50_m, quarter, _, unresolved] = sizes(&run, across)?;
-            for (values, value) in values.iter_mut().zip([d50_m, quarter, unresolved]) {
-                values.push(value);
-            }
-            times_s.push(run.processor_s());
-        }
-        all.push(Answers {
-            spheres,
-            values,
-            processor_s: mean(&times_s),
-        });
-    }
-    QUESTION.write(&all)
+    let keys = |lump: Lump, _: &Body| vec![format!("run.seed={}", lump.number)];
+    let values = |run: &Run, across: f64| {
+        let [d50_m, quarter, _, unresolved] = sizes(run, across)?;
+        Ok(vec![d50_m, quarter, unresolved])
+    };
+    QUESTION.write(&QUESTION.answered(bench, "chute", RUNS, keys, values)?)
 }

@@ -1,12 +1,13 @@
 //! The answers to a question by size of the spheres: their scatter, their error, their run time,
 //! and whether they converge.
 
+use dem_io::Body;
 use dem_laboratory::{Statistic, half_width};
 
 use super::bonds::{Bonds, PAGE, label};
-use super::spheres::{REFINEMENT, diameter_m};
-use crate::bench::Failed;
-use crate::cells::thousands;
+use super::spheres::{Lump, REFINEMENT, diameter_m, sieves};
+use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
+use crate::cells::{mean, thousands};
 use crate::table::{Table, write};
 
 /// One of the numbers that answer a question.
@@ -82,6 +83,47 @@ impl Interval {
 
     fn is_other_than_zero(self) -> bool {
         self.least > 0.0 || self.most < 0.0
+    }
+}
+
+impl Question {
+    /// The answers to all cases by a scene, whose lumps are each packed and turned in their own way.
+    /// `keys`: what a lump sets in it. `values`: what a run gives for each quantity, in SI.
+    pub(super) fn answered(
+        &self,
+        bench: &Bench,
+        scene: &str,
+        lumps: u32,
+        keys: impl Fn(Lump, &Body) -> Vec<String>,
+        values: impl Fn(&Run, f64) -> Result<Vec<f64>, Failed>,
+    ) -> Result<Vec<Answers>, Failed> {
+        let mut all = Vec::new();
+        for (bonds, across) in self.cases() {
+            let (mut found, mut times_s) = (vec![Vec::new(); self.quantities.len()], Vec::new());
+            let mut spheres = 0;
+            for number in 1..=lumps {
+                let lump = Lump { across, number };
+                let packed = lump.packed(Some(bench))?;
+                spheres = packed.radii.len();
+                let mut set = bonds.sets(across)?.to_vec();
+                set.push(sieves(across));
+                set.extend(keys(lump, &packed));
+                let mut options = sets(&set);
+                options.extend([ONE_THREAD.to_owned(), body("lump", &lump.file(bench))]);
+                let name = format!("{scene}-{}-{}", bonds.file_name(), lump.name());
+                let run = bench.run(&name, &format!("tests/resolution/{scene}.toml"), &options)?;
+                for (found, value) in found.iter_mut().zip(values(&run, across)?) {
+                    found.push(value);
+                }
+                times_s.push(run.processor_s());
+            }
+            all.push(Answers {
+                spheres,
+                values: found,
+                processor_s: mean(&times_s),
+            });
+        }
+        Ok(all)
     }
 }
 

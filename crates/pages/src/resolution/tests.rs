@@ -2,39 +2,21 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::sync::atomic::AtomicBool;
-
 use dem_io::Body;
-use dem_results::folder::{Existing, ResultsFolder};
-use dem_run::{RunSettings, plan, run};
-use dem_scene::scene_from_text;
 
 use super::bonds::{Bonds, PAGE, label};
 use super::compare::{Interval, convergence};
 use super::drop::{Fall, QUESTION, SPECIMENS, START, answers, keys};
 use super::spheres::{ACROSS, Lump, REFINEMENT};
-use crate::bench::{Failed, finished, root};
+use crate::bench::{Failed, Run, root};
 use crate::table::{parts, rows};
+use crate::tests::in_place;
 
 /// A fall of a lump in this process.
-fn in_place(bonds: Bonds, lump: Lump, packed: &Body, rung: i32) -> Result<Fall, Failed> {
-    let text = std::fs::read_to_string(root().join("tests/resolution/drop.toml"))?;
+fn falls(bonds: Bonds, lump: Lump, packed: &Body, rung: i32) -> Result<Fall, Failed> {
     let keys = keys(bonds, lump.across, rung)?;
-    let scene = scene_from_text(&text, "drop.toml", &keys)?;
-    let bodies = [("lump".to_owned(), packed.clone())];
-    let plan = plan(&scene, bodies.into(), 1, false)?;
-    let parent = tempfile::tempdir()?;
-    let folder = ResultsFolder::create(&parent.path().join("out"), Existing::Refuse)?;
-    let settings = RunSettings {
-        folder: Some(&folder),
-        resume: None,
-        test: None,
-        setup: None,
-        threads: 1,
-        interrupted: &AtomicBool::new(false),
-    };
-    run(plan, &scene, settings, &|_| ())?;
-    Fall::of(&finished(&parent.path().join("out")).unwrap(), lump.across)
+    let read = |run: &Run| Fall::of(run, lump.across);
+    in_place("tests/resolution/drop.toml", &keys, ("lump", packed), read)
 }
 
 #[test]
@@ -43,7 +25,7 @@ fn lumps_of_large_spheres_break_as_on_the_page() {
     let [_, text, _] = parts(&page, QUESTION.words, 0).unwrap();
     let shown = rows(text);
     let (bonds, across) = (Bonds::Softening, ACROSS[0]);
-    let fall = |lump: Lump, packed: &Body, rung| in_place(bonds, lump, packed, rung);
+    let fall = |lump: Lump, packed: &Body, rung| falls(bonds, lump, packed, rung);
     let found = answers(across, None, &mut [START; SPECIMENS], &fall).unwrap();
     let row = label(bonds, across);
     let row = shown.iter().find(|shown| shown[0] == row).unwrap();

@@ -1,11 +1,11 @@
 //! How fine does a weight break a lump?
 
 use dem_io::Body;
+use dem_io::body::body_summary;
 
-use super::compare::{Answers, Quantity, Question, share};
-use super::spheres::{ACROSS, Lump, QUARTER_M, passing, resolved_m, sieves};
-use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
-use crate::cells::mean;
+use super::compare::{Quantity, Question, share};
+use super::spheres::{ACROSS, Lump, QUARTER_M, passing, resolved_m};
+use crate::bench::{Bench, Failed, Run};
 
 pub(super) const QUESTION: Question = Question {
     words: "resolution weight",
@@ -54,44 +54,16 @@ pub(super) fn sizes(run: &Run, across: f64) -> Result<[f64; 4], Failed> {
     ])
 }
 
-/// The lowest and the highest place of a body, m.
-fn ends_m(body: &Body) -> [f64; 2] {
-    let places = body.positions.iter().zip(&body.radii);
-    let ends = places.map(|(place, radius)| [place[2] - radius, place[2] + radius]);
-    ends.fold([f64::INFINITY, f64::NEG_INFINITY], |so_far, ends| {
-        [so_far[0].min(ends[0]), so_far[1].max(ends[1])]
-    })
-}
-
 /// Lumps between an anvil and a weight that falls.
 pub(crate) fn weight(bench: &Bench) -> Result<(), Failed> {
-    let mut all = Vec::new();
-    for (bonds, across) in QUESTION.cases() {
-        let (mut values, mut times_s) = (vec![Vec::new(); 4], Vec::new());
-        let mut spheres = 0;
-        for number in 1..=SPECIMENS {
-            let lump = Lump { across, number };
-            let packed = lump.packed(Some(bench))?;
-            spheres = packed.radii.len();
-            let [low_m, high_m] = ends_m(&packed);
-            let mut keys = bonds.sets(across)?.to_vec();
-            keys.push(sieves(across));
-            keys.push(format!("walls.anvil.plane.point=[0,0,{}]", low_m - GAP_M));
-            keys.push(format!("walls.weight.plane.point=[0,0,{}]", high_m + GAP_M));
-            let mut options = sets(&keys);
-            options.extend([ONE_THREAD.to_owned(), body("lump", &lump.file(bench))]);
-            let name = format!("weight-{}-{}", bonds.file_name(), lump.name());
-            let run = bench.run(&name, "tests/resolution/weight.toml", &options)?;
-            for (values, value) in values.iter_mut().zip(sizes(&run, across)?) {
-                values.push(value);
-            }
-            times_s.push(run.processor_s());
-        }
-        all.push(Answers {
-            spheres,
-            values,
-            processor_s: mean(&times_s),
-        });
-    }
-    QUESTION.write(&all)
+    let keys = |_: Lump, packed: &Body| {
+        let lump = body_summary(packed);
+        let [low_m, high_m] = [lump.box_min_m[2] - GAP_M, lump.box_max_m[2] + GAP_M];
+        vec![
+            format!("walls.anvil.plane.point=[0,0,{low_m}]"),
+            format!("walls.weight.plane.point=[0,0,{high_m}]"),
+        ]
+    };
+    let values = |run: &Run, across: f64| Ok(sizes(run, across)?.to_vec());
+    QUESTION.write(&QUESTION.answered(bench, "weight", SPECIMENS, keys, values)?)
 }

@@ -83,6 +83,7 @@ pub struct MeshContent {
     /// Corners.
     pub corners: u32,
 }
+
 /// Number of points on the surface that is aimed at.
 const POINTS: usize = 1000;
 

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write};
 
-use dem_io::text::visible;
+use dem_io::text::{counted, visible};
 use dem_io::units::significant;
 
 use super::contents::{COARSE, Summary, Trust};
@@ -40,7 +40,7 @@ impl Summary {
             writeln!(out, "             and {more} more measure{s}")?;
         }
         if let Some(test) = &self.test {
-            write!(out, "{test}")?;
+            out.write_str(&test.text(&self.verdict.unresolved))?;
         }
         if self.equilibrium.is_none() {
             self.write_broken(out)?;
@@ -129,10 +129,10 @@ impl Summary {
         match self.verdict.word {
             Trust::Sound => "sound".to_owned(),
             Trust::Coarse => format!("coarse: {COARSE}"),
-            Trust::Doubtful => match self.verdict.warnings.len() {
-                1 => "doubtful: 1 warning".to_owned(),
-                many => format!("doubtful: {many} warnings"),
-            },
+            Trust::Doubtful => {
+                let warnings = counted(self.verdict.warnings.len(), "warning");
+                format!("doubtful: {warnings}")
+            }
         }
     }
 }

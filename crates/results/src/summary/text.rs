@@ -5,7 +5,6 @@ use std::fmt::{self, Write};
 use dem_io::body::mass::mass_lines;
 use dem_io::text::visible;
 use dem_io::units::significant;
-use dem_laboratory::test_result::TestResult;
 
 use super::contents::Summary;
 use super::equilibrium::EquilibriumSummary;
@@ -24,7 +23,7 @@ impl fmt::Display for Summary {
         self.write_head(f)?;
         measure_lines(&self.measures, f)?;
         if let Some(test) = &self.test {
-            f.write_str(&self.marked(test))?;
+            f.write_str(&test.text(&self.verdict.unresolved))?;
         }
         self.write_steps(f)?;
         self.write_broken(f)?;
@@ -107,20 +106,6 @@ impl Summary {
             "broken       {}{of_all} bonds{causes}{damaged}{yielded}",
             self.broken_bonds
         )
-    }
-
-    /// The text of a test, with a `*` behind a size of fragments that the spheres do not resolve.
-    fn marked(&self, test: &TestResult) -> String {
-        let is_unresolved = |line: &str| {
-            let name = line.split_whitespace().next();
-            name.is_some_and(|name| self.verdict.unresolved.iter().any(|other| other == name))
-        };
-        let text = test.to_string();
-        let lines = text.lines().map(|line| match is_unresolved(line) {
-            true => format!("{line}*\n"),
-            false => format!("{line}\n"),
-        });
-        lines.collect()
     }
 
     /// Largest deformations.
@@ -299,7 +284,7 @@ impl Summary {
         self.write_equilibrium_head(f)?;
         measure_lines(&self.measures, f)?;
         if let Some(test) = &self.test {
-            f.write_str(&self.marked(test))?;
+            f.write_str(&test.text(&self.verdict.unresolved))?;
         }
         let steps = |count: usize, what: &str| {
             format!("{count} {what}{}", if count == 1 { "" } else { "s" })

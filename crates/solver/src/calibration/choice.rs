@@ -7,9 +7,9 @@ use dem_laboratory::TestType;
 use dem_scene::study::RUN_RESULTS;
 use dem_scene::{Scene, Test, written_value};
 
-use dem_laboratory::test_result::{STIFFNESS, dimension_of};
-use dem_rig::dynamic::DYNAMIC_RESULTS;
-use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STRENGTH};
+use dem_laboratory::test_result::STIFFNESS;
+use dem_rig::dynamic::results_of;
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, STRENGTH};
 
 /// Largest deviation of the mean modulus from its target.
 const MODULUS_TOLERANCE: f64 = 0.01;
@@ -106,6 +106,17 @@ pub(super) fn refuse_twice<'a>(numbers: impl Iterator<Item = &'a Number>) -> Res
     Ok(())
 }
 
+/// The dimension of one of the results of a test. None: it is none of them, or a plain number.
+pub(super) fn dimension_of(
+    results: &[(&str, &'static Dimension)],
+    name: &str,
+) -> Option<&'static Dimension> {
+    let found = results.iter().find(|(known, _)| *known == name);
+    found
+        .map(|(_, dimension)| *dimension)
+        .filter(|dimension| !dimension.si.is_empty())
+}
+
 struct Chooser<'a> {
     scene: &'a Scene,
     text: &'a SceneText<'a>,
@@ -133,12 +144,8 @@ impl Chooser<'_> {
                 return Err(Diagnostic::input(place(), problem, remedy));
             };
             let measures = self.scene.measures.keys().map(String::as_str);
-            let of_test = match &self.scene.test {
-                None => &[][..],
-                Some(test) if test.kind.is_dynamic() => &DYNAMIC_RESULTS,
-                Some(_) => &RESULTS,
-            };
-            let known: Vec<&str> = (measures.chain(of_test.iter().copied()))
+            let of_test = self.of_test().iter().map(|(name, _)| *name);
+            let known: Vec<&str> = (measures.chain(of_test))
                 .chain(RUN_RESULTS.map(|(name, _)| name))
                 .collect();
             if !known.contains(&result) {
@@ -203,11 +210,16 @@ impl Chooser<'_> {
 
     /// The dimension of a measure, or of a figure of the test. None: a plain number.
     fn dimension(&self, result: &str) -> Option<&'static Dimension> {
-        let measure = self.scene.measures.get(result);
-        match measure {
+        match self.scene.measures.get(result) {
             Some(measure) => Some(measure.quantity.dimension),
-            None => dimension_of(result).filter(|_| self.scene.test.is_some()),
+            None => dimension_of(self.of_test(), result),
         }
+    }
+
+    /// The results that the test can have; none without a test.
+    fn of_test(&self) -> &'static [(&'static str, &'static Dimension)] {
+        let test = self.scene.test.as_ref();
+        test.map_or(&[], |test| results_of(test.kind))
     }
 
     /// The modulus of the bonds, if the scene has a target for it.

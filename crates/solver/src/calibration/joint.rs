@@ -6,13 +6,15 @@ use dem_calibration::{Aim, Free, Number};
 use dem_io::units::quantity;
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
-use dem_laboratory::test_result::{STIFFNESS, dimension_of};
+use dem_laboratory::test_result::STIFFNESS;
 use dem_rig::confined::RESIDUAL;
-use dem_rig::dynamic::DYNAMIC_RESULTS;
-use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS};
+use dem_rig::dynamic::results_of;
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS};
 use dem_scene::{BondKind, Scene, Test, material_text, set_text, written_value};
 
-use super::choice::{ModulusBy, STRENGTH_TOLERANCE, STRENGTHS, SceneText, refuse_twice, unknowns};
+use super::choice::{
+    ModulusBy, STRENGTH_TOLERANCE, STRENGTHS, SceneText, dimension_of, refuse_twice, unknowns,
+};
 use super::slopes::slope;
 
 /// Largest friction angle of bonds that a calibration tries, degrees.
@@ -345,11 +347,9 @@ fn named_aim(tests: &[TestScene], text: &str) -> Result<Aim> {
         None => (result, None),
     };
     let measures = tests[at].scene.measures.keys().map(String::as_str);
-    let of_test = match test.kind.is_dynamic() {
-        true => &DYNAMIC_RESULTS[..],
-        false => &RESULTS,
-    };
-    let results: Vec<&str> = measures.chain(of_test.iter().copied()).collect();
+    let of_test = results_of(test.kind);
+    let names = of_test.iter().map(|(name, _)| *name);
+    let results: Vec<&str> = measures.chain(names).collect();
     if !results.contains(&result) {
         let problem = format!("the scene has no measure or test result '{result}'");
         return Err(refuse(
@@ -359,7 +359,7 @@ fn named_aim(tests: &[TestScene], text: &str) -> Result<Aim> {
     }
     let measured = test.measured.as_ref().map(|measured| &measured.material);
     let residual_pa = measured.and_then(|material| material.residual_pa);
-    let dimension = dimension_of(result);
+    let dimension = dimension_of(of_test, result);
     let target = match value {
         None => residual_pa
             .filter(|_| result == RESIDUAL)

@@ -1,6 +1,7 @@
 //! A step that is too large: refused, or stopped with the unstable bond.
 
 use std::fs;
+use std::path::PathBuf;
 
 use super::{Bench, good};
 
@@ -52,25 +53,33 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
     assert!((1e-6..2e-5).contains(&own), "{said}");
 }
 
+/// A bar of two spheres, so far from the middle, m, whose bond breaks at once. It turns, so that they
+/// part, and its overlap acts once it is below a fraction of what it was.
+fn bursting(bench: &Bench, end_ms: u32, least: f64, modulus: &str, from_middle_m: f64) -> PathBuf {
+    let text = format!(
+        "version = 1
+run.end_time = \"{end_ms} ms\"
+relaxation.min_overlap = {least}
+materials.m = {{ density = 2000, young_modulus = \"{modulus}\" }}
+contacts.m-m = {{ restitution = 1 }}
+bonds.b = {{ young_modulus = \"1 MPa\", poisson_ratio = 0.3, failure = {{ tensile_strength = 0 }} }}
+[bodies.wheel]
+particles = [[-{from_middle_m}, 0, 0, 0.01], [{from_middle_m}, 0, 0, 0.01]]
+bond_list = [[0, 1]]
+material = \"m\"
+bonds = \"b\"
+angular_velocity = [0, 0, 100]
+"
+    );
+    bench.write("burst.toml", text)
+}
+
 /// Bars of spheres that overlap by half a radius burst at once. Those overlaps are relaxed, but
 /// act as soon as they fall below a fraction as large as theirs.
 #[test]
 fn a_large_min_overlap_is_blamed_and_not_the_step() {
     let bench = Bench::new();
-    let text = "version = 1
-run.end_time = \"20 ms\"
-relaxation.min_overlap = 0.9
-materials.m = { density = 2000, young_modulus = \"1 GPa\" }
-contacts.m-m = { restitution = 1 }
-bonds.b = { young_modulus = \"1 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = 0 } }
-[bodies.wheel]
-particles = [[-0.0075, 0, 0, 0.01], [0.0075, 0, 0, 0.01]]
-bond_list = [[0, 1]]
-material = \"m\"
-bonds = \"b\"
-angular_velocity = [0, 0, 100]
-";
-    let scene = bench.write("burst.toml", text);
+    let scene = bursting(&bench, 20, 0.9, "1 GPa", 0.0075);
     let said = bench.bad(&scene, &[], 3);
     assert!(said.contains("a smaller relaxation.min_overlap"), "{said}");
     bench.good(&scene, &["--set", "relaxation.min_overlap=1e-5"]);
@@ -80,20 +89,7 @@ angular_velocity = [0, 0, 100]
 #[test]
 fn the_verdict_blames_a_large_min_overlap_and_not_the_step() {
     let bench = Bench::new();
-    let text = "version = 1
-run.end_time = \"40 ms\"
-relaxation.min_overlap = 0.15
-materials.m = { density = 2000, young_modulus = \"1 MPa\" }
-contacts.m-m = { restitution = 1 }
-bonds.b = { young_modulus = \"1 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = 0 } }
-[bodies.wheel]
-particles = [[-0.0095, 0, 0, 0.01], [0.0095, 0, 0, 0.01]]
-bond_list = [[0, 1]]
-material = \"m\"
-bonds = \"b\"
-angular_velocity = [0, 0, 100]
-";
-    let scene = bench.write("burst.toml", text);
+    let scene = bursting(&bench, 40, 0.15, "1 MPa", 0.0095);
     let said = bench.good(&scene, &["--json", "--quiet"]);
     let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
     let error = summary["energy_error"].as_f64().unwrap();
