@@ -21,22 +21,22 @@ pub(super) struct Dropped {
 /// Drops triangles without area and all but one of each set of equal triangles, and sorts the rest
 /// by their vertices.
 ///
-/// An even number of equal triangles may also be where two parts touch or overlap, face on face.
-/// Where that closes the surface, none is kept of those that stand there both ways round (a wall
-/// between the parts), and two of those that stand there one way round.
+/// Equal triangles may also be where parts touch or overlap, face on face. Where that closes the
+/// surface, as many are kept as stand there more often one way round than the other: none of a wall
+/// between two parts, all of a face that parts on one side have in common.
 pub(super) fn drop_superfluous(mesh: &mut Mesh) -> Dropped {
     let all = mesh.triangles.len();
     let (degenerate, kept) = keep_one_of_equal(mesh, NO_HEIGHT);
-    let pairs: Vec<Pair> = (0..)
+    let faces: Vec<CommonFace> = (0..)
         .zip(&kept)
-        .filter(|(_, equal)| equal.count % 2 == 0)
-        .map(|(triangle, equal)| Pair {
+        .filter(|(_, surplus)| **surplus != 1)
+        .map(|(triangle, surplus)| CommonFace {
             triangle,
-            both_ways: equal.both_ways,
+            surplus: *surplus,
         })
         .collect();
-    if !pairs.is_empty() {
-        settle_pairs(mesh, &pairs);
+    if !faces.is_empty() {
+        settle_common_faces(mesh, &faces);
     }
     Dropped {
         degenerate,
@@ -44,17 +44,10 @@ pub(super) fn drop_superfluous(mesh: &mut Mesh) -> Dropped {
     }
 }
 
-/// A set of equal triangles.
-pub(super) struct Equal {
-    count: usize,
-    /// As many stand there one way round as the other.
-    pub(super) both_ways: bool,
-}
-
 /// Drops triangles no higher than `no_height` (local units) and all but one of each set of equal
 /// ones, wound as most of its set are, and sorts the rest by their vertices. How many had no area,
-/// and the set of each that is kept.
-pub(super) fn keep_one_of_equal(mesh: &mut Mesh, no_height: f64) -> (usize, Vec<Equal>) {
+/// and for each that is kept how many more of its set stand there one way round than the other.
+pub(super) fn keep_one_of_equal(mesh: &mut Mesh, no_height: f64) -> (usize, Vec<usize>) {
     let mut sorted: Vec<([u32; 3], bool)> = (0..mesh.triangles.len() as u32)
         .filter(|t| has_area(mesh, *t, no_height))
         .map(|t| {
@@ -74,19 +67,16 @@ pub(super) fn keep_one_of_equal(mesh: &mut Mesh, no_height: f64) -> (usize, Vec<
         } else {
             [a, b, c]
         });
-        kept.push(Equal {
-            count: equal.len(),
-            both_ways: 2 * turned == equal.len(),
-        });
+        kept.push((2 * turned).abs_diff(equal.len()));
     }
     (degenerate, kept)
 }
 
-/// A triangle that stands there an even number of times.
-struct Pair {
+/// A triangle of more than one part.
+struct CommonFace {
     triangle: u32,
-    /// As often one way round as the other.
-    both_ways: bool,
+    /// How many more of its kind stand there one way round than the other. Not one.
+    surplus: usize,
 }
 
 fn has_area(mesh: &Mesh, triangle: u32, no_height: f64) -> bool {
@@ -135,16 +125,16 @@ pub(super) fn drop_loose_slivers(mesh: &mut Mesh, tolerance: f64) -> usize {
     before - mesh.triangles.len()
 }
 
-/// Decides for each patch of connected `pairs` of triangles whether one of each is kept, and winds
-/// those that stand there both ways like a neighbour.
-fn settle_pairs(mesh: &mut Mesh, pairs: &[Pair]) {
+/// Decides for each patch of connected `faces` whether one of each is kept or its surplus, and
+/// winds those that stand there both ways like a neighbour.
+fn settle_common_faces(mesh: &mut Mesh, faces: &[CommonFace]) {
     let edges = Edges::of(mesh);
     let place = |h: u32| {
-        pairs
-            .binary_search_by_key(&(h / 3), |pair| pair.triangle)
+        faces
+            .binary_search_by_key(&(h / 3), |face| face.triangle)
             .ok()
     };
-    let mut patches = Sets::new(pairs.len());
+    let mut patches = Sets::new(faces.len());
     for group in edges.groups() {
         let mut members = group.iter().filter_map(|h| place(*h));
         if let Some(first) = members.next() {
@@ -153,18 +143,16 @@ fn settle_pairs(mesh: &mut Mesh, pairs: &[Pair]) {
             });
         }
     }
-    // Edges of each patch with an odd number of facets when one of each pair is kept, and
-    // otherwise.
-    let mut odd = vec![[0_usize; 2]; pairs.len()];
+    let mut one_kept = vec![Faults::default(); faces.len()];
+    let mut surplus_kept = one_kept.clone();
     for group in edges.groups() {
-        let members: Vec<usize> = group.iter().filter_map(|h| place(*h)).collect();
-        if let Some(first) = members.first() {
-            let patch = &mut odd[patches.find(*first as u32).0 as usize];
-            patch[0] += group.len() % 2;
-            patch[1] += (group.len() - members.len()) % 2;
+        if let Some(first) = group.iter().find_map(|h| place(*h)) {
+            let patch = patches.find(first as u32).0 as usize;
+            one_kept[patch].add(mesh, group, |_| 1);
+            surplus_kept[patch].add(mesh, group, |h| place(h).map_or(1, |i| faces[i].surplus));
         }
     }
-    let both_ways = |h: u32| place(h).is_some_and(|i| pairs[i].both_ways);
+    let both_ways = |h: u32| place(h).is_some_and(|i| faces[i].surplus == 0);
     for group in edges.groups().filter(|group| group.len() == 2) {
         for (this, other) in [(group[0], group[1]), (group[1], group[0])] {
             if both_ways(this) && !both_ways(other) && mesh.half_edge(this) == mesh.half_edge(other)
@@ -175,12 +163,14 @@ fn settle_pairs(mesh: &mut Mesh, pairs: &[Pair]) {
         }
     }
     let mut dropped = vec![false; mesh.triangles.len()];
-    for (i, pair) in pairs.iter().enumerate() {
-        let [one_kept, otherwise] = odd[patches.find(i as u32).0 as usize];
-        if otherwise < one_kept && pair.both_ways {
-            dropped[pair.triangle as usize] = true;
-        } else if otherwise < one_kept {
-            mesh.triangles.push(mesh.triangles[pair.triangle as usize]);
+    for (i, face) in faces.iter().enumerate() {
+        let patch = patches.find(i as u32).0 as usize;
+        if surplus_kept[patch] < one_kept[patch] {
+            dropped[face.triangle as usize] = face.surplus == 0;
+            let corners = mesh.triangles[face.triangle as usize];
+            for _ in 1..face.surplus {
+                mesh.triangles.push(corners);
+            }
         }
     }
     let mut place = 0;
@@ -188,4 +178,28 @@ fn settle_pairs(mesh: &mut Mesh, pairs: &[Pair]) {
         place += 1;
         place > dropped.len() || !dropped[place - 1]
     });
+}
+
+/// Edges of a patch that do not close the surface. The fewer odd ones the better, then the fewer
+/// against each other.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Faults {
+    /// Edges with an odd number of facets.
+    odd: usize,
+    /// Edges along which more facets run one way than the other.
+    unbalanced: usize,
+}
+
+impl Faults {
+    /// Counts an edge, each facet of which stands there `times`.
+    fn add(&mut self, mesh: &Mesh, group: &[u32], times: impl Fn(u32) -> usize) {
+        let (mut facets, mut forwards) = (0, 0);
+        for h in group {
+            let [start, end] = mesh.half_edge(*h);
+            facets += times(*h);
+            forwards += if start < end { times(*h) } else { 0 };
+        }
+        self.odd += facets % 2;
+        self.unbalanced += usize::from(2 * forwards != facets);
+    }
 }

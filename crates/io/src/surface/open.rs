@@ -134,10 +134,10 @@ fn read(bytes: &[u8], source: &str, unit_m: Option<f64>, scale: f64) -> Result<O
 fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
     let all = mesh.triangles.len();
     let (degenerate, kept) = keep_one_of_equal(mesh, NO_HEIGHT * diagonal);
-    if kept.iter().any(|equal| equal.both_ways) {
-        let turned = turned(mesh, |t| !kept[t as usize].both_ways);
+    if kept.contains(&0) {
+        let turned = turned(mesh, |t| kept[t as usize] != 0);
         for (t, triangle) in mesh.triangles.iter_mut().enumerate() {
-            if kept[t].both_ways && turned[t] {
+            if kept[t] == 0 && turned[t] {
                 triangle.swap(1, 2);
             }
         }

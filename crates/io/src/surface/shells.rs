@@ -89,7 +89,15 @@ fn pair(mesh: &Mesh, sets: &mut Sets, group: &[u32]) -> Result<(), u32> {
         (against, narrowest, pairs)
     });
     choices.sort_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)));
-    for (_, _, pairs) in choices {
+    let nested = if choices[0].0 > 0 {
+        nested_pairs(mesh, &around)
+    } else {
+        None
+    };
+    for pairs in nested
+        .into_iter()
+        .chain(choices.into_iter().map(|(_, _, pairs)| pairs))
+    {
         if pairs.iter().all(|(a, b)| may_join(mesh, sets, a.1, b.1)) {
             return pairs
                 .iter()
@@ -97,6 +105,39 @@ fn pair(mesh: &Mesh, sets: &mut Sets, group: &[u32]) -> Result<(), u32> {
         }
     }
     Err(group[0])
+}
+
+/// A half-edge and the angle of its triangle around the edge, rad.
+type AtAngle = (f64, u32);
+
+/// Pairs of half-edges that run against each other, none of which crosses another: the wedges of
+/// solids that lie within each other. None: more half-edges run one way than the other.
+fn nested_pairs(mesh: &Mesh, around: &[AtAngle]) -> Option<Vec<(AtAngle, AtAngle)>> {
+    let forwards = |h: u32| {
+        let [start, end] = mesh.half_edge(h);
+        start < end
+    };
+    // The first of a pair runs forwards: begin where the most wedges have ended.
+    let (mut depth, mut lowest, mut first) = (0_i32, 0, 0);
+    for (i, (_, h)) in around.iter().enumerate() {
+        depth += if forwards(*h) { 1 } else { -1 };
+        if depth < lowest {
+            (lowest, first) = (depth, i + 1);
+        }
+    }
+    if depth != 0 {
+        return None;
+    }
+    let (mut open, mut pairs) = (Vec::new(), Vec::new());
+    for i in first..first + around.len() {
+        let this = around[i % around.len()];
+        if forwards(this.1) {
+            open.push(this);
+        } else {
+            pairs.push((open.pop()?, this));
+        }
+    }
+    Some(pairs)
 }
 
 /// Whether two half-edges of the same edge can be joined as things stand.
@@ -124,7 +165,7 @@ fn without_closed_parts(mesh: &Mesh, sets: &mut Sets, group: &[u32]) -> Vec<u32>
 }
 
 /// Half-edges of one edge with the angle of their triangles around it, sorted by it.
-fn sorted_around_edge(mesh: &Mesh, group: &[u32]) -> Vec<(f64, u32)> {
+fn sorted_around_edge(mesh: &Mesh, group: &[u32]) -> Vec<AtAngle> {
     let [a, b] = mesh.half_edge(group[0]);
     let [start, end] = [a.min(b), a.max(b)].map(|v| mesh.vertices[v as usize]);
     let axis = (end - start).normalize();
@@ -134,7 +175,7 @@ fn sorted_around_edge(mesh: &Mesh, group: &[u32]) -> Vec<(f64, u32)> {
     };
     let y = axis.cross(&across(group[0])).normalize();
     let x = y.cross(&axis);
-    let mut around: Vec<(f64, u32)> = group
+    let mut around: Vec<AtAngle> = group
         .iter()
         .map(|h| {
             let to = across(*h);

@@ -71,6 +71,78 @@ fn parts_that_overlap_with_a_face_in_common_form_their_union() {
     }
 }
 
+/// Boxes of whole numbers, and the volume of their union.
+type Boxes = (&'static [[[u8; 3]; 2]], f64);
+
+#[test]
+fn three_parts_with_faces_in_common_form_their_union() {
+    let cases: [Boxes; 5] = [
+        // Within each other, with two faces each in one plane.
+        (
+            &[
+                [[0, 1, 1], [2, 4, 4]],
+                [[0, 1, 1], [2, 2, 3]],
+                [[0, 1, 1], [2, 4, 3]],
+            ],
+            18.0,
+        ),
+        // One face three times.
+        (
+            &[
+                [[0, 0, 0], [1, 1, 1]],
+                [[0, 0, 0], [2, 1, 1]],
+                [[0, 0, 0], [3, 1, 1]],
+            ],
+            3.0,
+        ),
+        // Three and two times.
+        (
+            &[
+                [[0, 0, 0], [1, 1, 1]],
+                [[0, 0, 0], [2, 1, 1]],
+                [[0, 0, 0], [2, 2, 1]],
+            ],
+            4.0,
+        ),
+        // A face of two, the third on its other side.
+        (
+            &[
+                [[0, 0, 0], [1, 1, 1]],
+                [[0, 0, 0], [2, 1, 1]],
+                [[1, 0, 0], [2, 1, 1]],
+            ],
+            2.0,
+        ),
+        (
+            &[
+                [[0, 0, 0], [1, 1, 1]],
+                [[0, 0, 0], [2, 1, 1]],
+                [[0, 0, 0], [1, 1, 2]],
+            ],
+            3.0,
+        ),
+    ];
+    for (boxes, union) in cases {
+        let facets: Vec<_> = boxes
+            .iter()
+            .flat_map(|corners| {
+                let [min, max] = corners.map(|corner| corner.map(f64::from));
+                block(min, max)
+            })
+            .collect();
+        for facets in [turned(&facets), facets] {
+            let surface = read(&binary(&facets), METRES);
+            assert!(
+                (surface.volume_m3() / union - 1.0).abs() < 1e-3,
+                "{} not {union}: {boxes:?} {:?} {:?}",
+                surface.volume_m3(),
+                surface.shells,
+                surface.warnings
+            );
+        }
+    }
+}
+
 #[test]
 fn a_cavity_within_overlapping_parts_is_still_one() {
     let mut facets = block([0.0; 3], [4.0; 3]);

@@ -30,7 +30,7 @@ proptest! {
 
     #[test]
     fn boxes_on_a_grid_that_touch_and_overlap_form_their_union(
-        corners in prop::collection::vec((prop::array::uniform3(0..4_u8), prop::array::uniform3(1..4_u8)), 2..4),
+        corners in prop::collection::vec((prop::array::uniform3(0..3_u8), prop::array::uniform3(1..4_u8)), 2..6),
         turn in any::<bool>(),
     ) {
         let boxes: Vec<([u8; 3], [u8; 3])> = corners.iter().map(|(c, size)| (*c, [0, 1, 2].map(|k| c[k] + size[k]))).collect();
