@@ -24,6 +24,7 @@ pub mod triangles;
 pub mod units;
 pub mod vtk;
 pub mod vtp;
+pub mod whole_folder;
 pub mod write_target;
 mod xml;
 

@@ -5,3 +5,4 @@ mod body_files;
 mod interrupted_write;
 mod surfaces;
 mod units;
+mod whole_folder;

@@ -35,10 +35,10 @@ mod words;
 
 use std::path::Path;
 
+use dem_io::Result;
 use dem_io::safe_write::{write_file, write_json_text};
 use dem_io::stl::write_stl_text;
-use dem_io::write_target::need_folder_of;
-use dem_io::{Diagnostic, Result};
+use dem_io::whole_folder::WholeFolder;
 use dem_scene::Scene;
 use serde::Serialize;
 
@@ -107,38 +107,39 @@ pub fn export(
         sieves_m: (scene.output.as_ref()).map_or_else(Vec::new, |o| o.sieves_m.clone()),
     };
     let texts = [(INPUT, input.text()), (PAGE, page::page(&input))];
-    in_new_folder(folder, |folder| {
-        write_file(&folder.join(DATA), |out| {
-            data::write(plan, &contacts, &types, &molecules, &feeds, out)
-        })?;
-        for feed in &feeds {
-            let template = &plan.state.clumps.templates[feed.template];
-            write_file(&folder.join(feed.file()), |out| {
-                feeds::write(feed, template, out)
-            })?;
-        }
-        for wall in &walls {
-            if let Some(surface) = wall.surface() {
-                write_file(&folder.join(wall.file()), |out| {
-                    write_stl_text(&format!("wall {}", wall.number), &surface.triangles_m, out)
-                })?;
-            }
-        }
-        if !types.types.is_empty() {
-            write_file(&folder.join(TYPES), |out| bonds::write(&types, out))?;
-        }
-        if clumps::has_bodies(&plan.state) {
-            write_file(&folder.join(CLUMPS), |out| {
-                clumps::write(&plan.state, &molecules, out)
-            })?;
-        }
-        for (name, text) in &texts {
-            write_file(&folder.join(name), |out| out.write_all(text.as_bytes()))?;
-        }
-        write_file(&folder.join(MANIFEST), |out| {
-            write_json_text(out, &manifest)
-        })
+    let whole = WholeFolder::beside(folder, "--output")?;
+    let folder = whole.path();
+    write_file(&folder.join(DATA), |out| {
+        data::write(plan, &contacts, &types, &molecules, &feeds, out)
     })?;
+    for feed in &feeds {
+        let template = &plan.state.clumps.templates[feed.template];
+        write_file(&folder.join(feed.file()), |out| {
+            feeds::write(feed, template, out)
+        })?;
+    }
+    for wall in &walls {
+        if let Some(surface) = wall.surface() {
+            write_file(&folder.join(wall.file()), |out| {
+                write_stl_text(&format!("wall {}", wall.number), &surface.triangles_m, out)
+            })?;
+        }
+    }
+    if !types.types.is_empty() {
+        write_file(&folder.join(TYPES), |out| bonds::write(&types, out))?;
+    }
+    if clumps::has_bodies(&plan.state) {
+        write_file(&folder.join(CLUMPS), |out| {
+            clumps::write(&plan.state, &molecules, out)
+        })?;
+    }
+    for (name, text) in &texts {
+        write_file(&folder.join(name), |out| out.write_all(text.as_bytes()))?;
+    }
+    write_file(&folder.join(MANIFEST), |out| {
+        write_json_text(out, &manifest)
+    })?;
+    whole.publish()?;
     Ok(Written {
         particles: plan.state.particles.len(),
         bonds: plan.state.bonds.len(),
@@ -156,46 +157,4 @@ fn fed_body(plan: &Plan, feed: &feeds::Feed) -> FedBody {
         is_clump: feed.is_clump,
         density_kg_m3: feeds::density_kg_m3(&plan.state.clumps.templates[feed.template]),
     }
-}
-
-/// Writes into a folder that must be new or empty. If it fails, nothing is left of it.
-fn in_new_folder(folder: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-    let place = || folder.display().to_string();
-    need_folder_of(folder)?;
-    let is_there = folder.exists();
-    let is_empty = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
-    if is_there && !is_empty {
-        return Err(Diagnostic::input(
-            place(),
-            "it exists and is not an empty folder",
-            "name a new folder with --output",
-        ));
-    }
-    let failed = |error: std::io::Error| {
-        Diagnostic::failed(place(), format!("cannot be written: {error}"), "")
-    };
-    let target = std::path::absolute(folder).map_err(failed)?;
-    let parent = target.parent().unwrap_or(Path::new("."));
-    let unfinished = tempfile::Builder::new()
-        .prefix(".lammps-")
-        .tempdir_in(parent)
-        .map_err(failed)?;
-    write(unfinished.path())?;
-    if is_there {
-        std::fs::remove_dir(&target).map_err(failed)?;
-    }
-    make_readable(unfinished.path()).map_err(failed)?;
-    std::fs::rename(unfinished.keep(), &target).map_err(failed)
-}
-
-/// Gives a folder the permissions of one that a user makes: temporary ones are private.
-#[cfg(unix)]
-fn make_readable(folder: &Path) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))
-}
-
-#[cfg(not(unix))]
-fn make_readable(_: &Path) -> std::io::Result<()> {
-    Ok(())
 }

@@ -19,7 +19,6 @@ mod keys_text;
 mod lab;
 mod memory;
 mod new;
-mod new_folder;
 mod pace;
 mod packings;
 mod picture;

@@ -97,6 +97,15 @@ pub struct StoredFragment {
     pub mass_kg: f64,
 }
 
+/// What belongs to a fragment of a frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Members {
+    /// Its particles, ascending.
+    pub particles: Vec<usize>,
+    /// Its unbroken bonds, ascending.
+    pub bonds: Vec<usize>,
+}
+
 impl StoredFrame {
     /// All fragments, the heaviest first; among equal ones the one with the smallest number.
     pub fn fragments(&self) -> Vec<StoredFragment> {
@@ -117,11 +126,17 @@ impl StoredFrame {
         fragments
     }
 
-    /// The particles of each fragment, ascending.
-    pub fn members(&self) -> BTreeMap<u32, Vec<usize>> {
-        let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    /// The particles and unbroken bonds of each fragment.
+    pub fn members(&self) -> BTreeMap<u32, Members> {
+        let mut members: BTreeMap<u32, Members> = BTreeMap::new();
         for (i, &id) in self.clusters.iter().enumerate() {
-            members.entry(id).or_default().push(i);
+            members.entry(id).or_default().particles.push(i);
+        }
+        for (bond, &[a, b]) in self.bonds.iter().enumerate() {
+            let [a, b] = [a, b].map(|end| self.clusters[end as usize]);
+            if !self.broken[bond] && a == b {
+                members.entry(a).or_default().bonds.push(bond);
+            }
         }
         members
     }
@@ -136,32 +151,31 @@ impl StoredFrame {
     /// # Errors
     /// No such fragment; the frame lacks its bonds or their form without load; no valid body.
     pub fn body(&self, id: u32) -> Result<Body> {
-        let members: Vec<usize> = (0..self.clusters.len())
-            .filter(|&i| self.clusters[i] == id)
-            .collect();
-        if members.is_empty() {
-            return Err(self.unknown(id));
+        match self.members().get(&id) {
+            Some(members) => self.body_of(id, members),
+            None => Err(self.unknown(id)),
         }
-        self.refuse_rigid(id, &members)?;
-        let mut number_of = vec![u32::MAX; self.clusters.len()];
-        for (number, &i) in (0..).zip(&members) {
-            number_of[i] = number;
-        }
-        let is_whole = |bond: &usize| {
-            let ends = self.bonds[*bond].map(|end| self.clusters[end as usize]);
-            !self.broken[*bond] && ends == [id; 2]
-        };
-        let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
-        let [turns_rad, bond_directions] = self.form_without_load(id, &members, &bonds)?;
+    }
+
+    /// The fragment `id`, whose [members](Self::members) are known, as a [body](Self::body).
+    ///
+    /// # Errors
+    /// The frame lacks its bonds or their form without load; no valid body.
+    pub fn body_of(&self, id: u32, members: &Members) -> Result<Body> {
+        let Members { particles, bonds } = members;
+        self.refuse_rigid(id, particles)?;
+        // Ascending, and bonds are of these particles alone.
+        let number_of = |end: u32| particles.partition_point(|&i| i < end as usize) as u32;
+        let [turns_rad, bond_directions] = self.form_without_load(id, particles, bonds)?;
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
         Body::from_parts(Parts {
-            positions: members.iter().map(|&i| self.positions[i]).collect(),
-            radii: members.iter().map(|&i| self.radii[i]).collect(),
+            positions: particles.iter().map(|&i| self.positions[i]).collect(),
+            radii: particles.iter().map(|&i| self.radii[i]).collect(),
             turns_rad,
             bond_directions,
             bonds: bonds
                 .iter()
-                .map(|&bond| self.bonds[bond].map(|end| number_of[end as usize]))
+                .map(|&bond| self.bonds[bond].map(number_of))
                 .collect(),
             bond_radii: Some(bonds.iter().map(|&bond| self.bond_radii[bond]).collect()),
             bond_lengths: Some(bonds.iter().map(|&bond| self.bond_lengths[bond]).collect()),
@@ -170,10 +184,10 @@ impl StoredFrame {
             } else {
                 Vec::new()
             },
-            bond_histories: of_some(&self.histories, &bonds),
+            bond_histories: of_some(&self.histories, bonds),
             about: About {
                 particle_density_kg_m3: common_density(
-                    members.iter().map(|&i| self.densities_kg_m3[i]),
+                    particles.iter().map(|&i| self.densities_kg_m3[i]),
                 ),
                 ..About::default()
             },

@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::body::{StoredFrame, vtp};
-use dem_io::safe_write::PendingFile;
+use dem_io::safe_write::write_file;
 use dem_io::stl::write_stl;
 use dem_io::text::visible;
 use dem_io::units::significant;
+use dem_io::whole_folder::WholeFolder;
 use dem_io::{Diagnostic, Result};
 use dem_physics::shape::hull::{SMALLER_BY, convex_hull};
 use dem_terminal::standard_output::write_standard_output;
 
-use super::fragment_body::fragment_body;
-use super::new_folder::NewFolder;
+use super::fragment_body::name_fragment;
 
 /// Millimetres in a metre: STL files are in millimetres, as dem-pack and scenes read them.
 const MM: f64 = 1e3;
@@ -34,9 +34,9 @@ pub(super) fn write_all(
             "add --output FOLDER",
         ));
     }
-    let folder = NewFolder::make(output, "--output")?;
-    let count = write_files(frame, path, output, as_hulls)?;
-    folder.keep();
+    let folder = WholeFolder::beside(output, "--output")?;
+    let count = write_files(frame, path, folder.path(), as_hulls)?;
+    folder.publish()?;
     if quiet {
         return Ok(());
     }
@@ -57,37 +57,34 @@ pub(super) fn write_all(
 }
 
 /// Writes the files, and returns their number.
-fn write_files(frame: &StoredFrame, path: &Path, output: &Path, as_hulls: bool) -> Result<usize> {
-    let members = frame.members();
-    let mut pending: Vec<PendingFile> = Vec::with_capacity(members.len());
-    for (&id, members) in &members {
+fn write_files(frame: &StoredFrame, path: &Path, folder: &Path, as_hulls: bool) -> Result<usize> {
+    let fragments = frame.members();
+    for (&id, members) in &fragments {
+        let particles = &members.particles;
         let named = |error: Diagnostic| error.within(&format!("fragment {id}"));
         if as_hulls {
-            let centres_m: Vec<[f64; 3]> = members.iter().map(|&i| frame.positions[i]).collect();
-            let radii_m: Vec<f64> = members.iter().map(|&i| frame.radii[i]).collect();
+            let centres_m: Vec<[f64; 3]> = particles.iter().map(|&i| frame.positions[i]).collect();
+            let radii_m: Vec<f64> = particles.iter().map(|&i| frame.radii[i]).collect();
             let facets = convex_hull(&centres_m, &radii_m).map_err(named)?;
             let facets: Vec<[[f64; 3]; 3]> = facets
                 .iter()
                 .map(|facet| facet.map(|corner| corner.map(|x| MM * x)))
                 .collect();
-            let file = file_of(output, id, "stl");
+            let file = file_of(folder, id, "stl");
             let header = format!(
                 "fragment {id}, convex hull of {} spheres, mm",
-                members.len()
+                particles.len()
             );
-            pending.push(PendingFile::write(&file, |out| {
-                write_stl(&header, &facets, out)
-            })?);
+            write_file(&file, |out| write_stl(&header, &facets, out))?;
         } else {
-            let body = fragment_body(frame, path, id).map_err(named)?;
+            let mut body = frame.body_of(id, members).map_err(named)?;
+            name_fragment(&mut body, path, id);
             body.check().map_err(named)?;
-            let file = file_of(output, id, "vtp");
-            pending.push(PendingFile::write(&file, |out| vtp::write(&body, out))?);
+            let file = file_of(folder, id, "vtp");
+            write_file(&file, |out| vtp::write(&body, out))?;
         }
     }
-    let count = pending.len();
-    pending.into_iter().try_for_each(PendingFile::publish)?;
-    Ok(count)
+    Ok(fragments.len())
 }
 
 /// `fragment_000123.stl`.

@@ -9,14 +9,14 @@ use dem_io::safe_write::PendingFile;
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::vtk::exact;
+use dem_io::whole_folder::WholeFolder;
 use dem_io::write_target::need_folder_of;
 use dem_io::{Bounds, Diagnostic, Result};
 use dem_results::folder::{frame_in, frames_in};
 use dem_terminal::standard_output::write_standard_output;
 
-use super::export_walls::pending_walls;
+use super::export_walls::write_wall_files;
 use super::fragment::refuse_overwriting_files;
-use super::new_folder::NewFolder;
 
 #[derive(Debug, Args)]
 pub(super) struct FramesArguments {
@@ -88,14 +88,14 @@ pub(super) fn export_frames(arguments: &FramesArguments) -> Result<()> {
         pending.push(write_dump(results, &numbers, path, &mut section)?);
     }
     let folder = arguments.walls.as_deref();
-    let folder = folder.map(|folder| NewFolder::make(folder, "--walls"));
+    let folder = folder.map(|folder| WholeFolder::beside(folder, "--walls"));
     let folder = folder.transpose()?;
     if let Some(folder) = &folder {
-        pending.extend(pending_walls(results, &numbers, folder.path())?);
+        write_wall_files(results, &numbers, folder.path())?;
     }
     pending.into_iter().try_for_each(PendingFile::publish)?;
     if let Some(folder) = folder {
-        folder.keep();
+        folder.publish()?;
     }
     if arguments.quiet {
         return Ok(());

@@ -5,13 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use dem_io::Result;
-use dem_io::safe_write::explain;
 use dem_io::text::{counted, visible};
+use dem_io::whole_folder::WholeFolder;
 use dem_results::Existing;
 use dem_terminal::colour::{Colour, on_standard_error};
 use dem_terminal::standard_output::write_standard_output;
 
-use super::new_folder::WholeFolder;
 use dem_lammps::import::{Came, import as import_run};
 
 #[derive(Debug, Args)]
@@ -36,7 +35,7 @@ fn import_whole(arguments: &ImportArguments, existing: Existing) -> Result<Came>
     if std::fs::symlink_metadata(output).is_ok() || output.file_name().is_none() {
         return import_run(&arguments.folder, output, existing);
     }
-    let folder = WholeFolder::beside(output).map_err(|error| explain(output, &error))?;
+    let folder = WholeFolder::beside(output, "--output")?;
     let came = import_run(&arguments.folder, folder.path(), existing)?;
     folder.publish()?;
     Ok(came)

@@ -10,12 +10,12 @@ mod surfaces;
 mod templates;
 
 use std::fs;
-use std::io::{Error, ErrorKind};
 use std::path::Path;
 
 use dem_io::body::files::write_body;
-use dem_io::safe_write::{explain, write_file};
+use dem_io::safe_write::write_file;
 use dem_io::text::visible;
+use dem_io::whole_folder::WholeFolder;
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::{Basis, Sizes};
 use dem_scene::reference;
@@ -26,7 +26,6 @@ use self::answers::{Answers, answers};
 pub(super) use self::arguments::NewArguments;
 use self::fill::filled;
 use self::shape::stl;
-use super::new_folder::WholeFolder;
 
 /// Name of the file of keys for editors, as in the first line of each scene.
 const SCHEMA: &str = "scene.schema.json";
@@ -100,10 +99,7 @@ fn write_folder(
 ) -> Result<String> {
     let folder = &arguments.folder;
     let template = arguments.template;
-    if let Some(parent) = folder.parent() {
-        fs::create_dir_all(parent).map_err(|error| no_parent(folder, &error))?;
-    }
-    let made = WholeFolder::beside(folder).map_err(|error| explain(folder, &error))?;
+    let made = WholeFolder::beside(folder, "FOLDER")?;
     let write = |name: &str, text: &str| {
         write_file(&made.path().join(name), |out| {
             out.write_all(text.as_bytes())
@@ -136,16 +132,4 @@ fn exists_already(folder: &Path) -> Diagnostic {
         "there is such a file or folder already, and nothing is overwritten",
         "name another folder",
     )
-}
-
-/// Why the folder in which the new one is made cannot be made.
-fn no_parent(folder: &Path, error: &Error) -> Diagnostic {
-    match error.kind() {
-        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => Diagnostic::input(
-            folder.display().to_string(),
-            "a part of this path is a file, not a folder",
-            "name another folder",
-        ),
-        _ => explain(folder, error),
-    }
 }

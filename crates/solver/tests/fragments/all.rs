@@ -155,12 +155,32 @@ fn all_bodies_are_those_written_one_by_one() {
 }
 
 #[test]
+fn the_current_folder_is_filled() {
+    let (parent, _, _) = burst();
+    let here = parent.path().join("here");
+    fs::create_dir(&here).unwrap();
+    good(&here, &["fragment", "../out", "--all", "--stl", "-o", "."]);
+    let out = parent.path().join("there");
+    good(
+        &here,
+        &["fragment", "../out", "--all", "--stl", "-o", "../there"],
+    );
+    let count = |folder: &Path| fs::read_dir(folder).unwrap().count();
+    assert!(count(&here) > 1 && count(&here) == count(&out));
+}
+
+#[test]
 fn nothing_is_written_where_something_is() {
     let (parent, _, _) = burst();
     let here = parent.path();
     fs::create_dir(here.join("full")).unwrap();
     fs::write(here.join("full/mine.stl"), "mine").unwrap();
     let before = fs::read_dir(here.join("out")).unwrap().count();
+    let said = bad(
+        here,
+        &["fragment", "out", "--all", "-o", "full/mine.stl/new"],
+    );
+    assert!(said.contains("a part of this path is a file"), "{said}");
     for (output, problem) in [
         ("full", "this folder is not empty"),
         ("full/mine.stl", "this is not a folder"),
