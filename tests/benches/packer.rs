@@ -129,7 +129,7 @@ fn body_files(criterion: &mut Criterion, body: &Body) {
         });
     });
     group.bench_function("reading", |bencher| {
-        bencher.iter(|| vtp::read(&mut black_box(bytes.as_slice())).expect("it was just written"))
+        bencher.iter(|| vtp::read(&mut black_box(bytes.as_slice())).expect("it was just written"));
     });
     group.finish();
 }

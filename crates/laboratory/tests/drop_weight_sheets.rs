@@ -318,7 +318,7 @@ fn damaged_sheets_are_read_or_refused() {
     let (mut fitted, mut refused) = (0, 0);
     for seed in 0..400 {
         let mut bytes = whole.clone().into_bytes();
-        for change in 0..1 + seed % 4 {
+        for change in 0..=(seed % 4) {
             let at = (uniform(seed, &[change, 0]) * bytes.len() as f64) as usize;
             let other = b"0123456789.,;-+e% \n"[(uniform(seed, &[change, 1]) * 19.0) as usize];
             match (uniform(seed, &[change, 2]) * 3.0) as usize {

@@ -152,7 +152,7 @@ impl Input<'_> {
             let id = format!("wall_{number}_{material}");
             meetings.push((id, format!("material_{material}"), law.as_str()));
             let fed = self.feeds.iter().filter(|f| f.material + 1 == material);
-            for group in fed.map(|feed| feed.group()) {
+            for group in fed.map(super::feeds::Feed::group) {
                 meetings.push((format!("wall_{number}_{group}"), group, law.as_str()));
             }
         }

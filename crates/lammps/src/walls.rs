@@ -189,7 +189,7 @@ fn plane_region(point: &[f64; 3], normal: &[f64; 3]) -> String {
 fn holds_all(plan: &Plan, faces: Vec<Face>) -> Result<Vec<Face>, String> {
     let is_in = |place: &Vector3<f64>| faces.iter().all(|face| depth_m(face, place) > 0.0);
     let particles = plan.state.particles.poses.iter();
-    let mut particles = particles.map(|pose| pose.place());
+    let mut particles = particles.map(dem_engine::state::particles::Pose::place);
     if !particles.all(|place| is_in(&place)) {
         return Err("there are particles outside".to_owned());
     }

@@ -127,9 +127,9 @@ fn directions() -> impl Iterator<Item = Vector3> {
     let diagonal = 1.0 / 3.0_f64.sqrt();
     (0..27).filter(|at| *at != 13).map(move |at| {
         Vector3::new(
-            (at % 3) as f64 - 1.0,
-            (at / 3 % 3) as f64 - 1.0,
-            (at / 9) as f64 - 1.0,
+            f64::from(at % 3) - 1.0,
+            f64::from(at / 3 % 3) - 1.0,
+            f64::from(at / 9) - 1.0,
         ) * diagonal
     })
 }

@@ -74,7 +74,7 @@ pub(super) fn place_body(
             let seed = (scene.run.seed, body_key(name, 0));
             place_bonds(body, kind, rule, seed, particles, &mut one, bonds)
                 .and_then(|()| restore(bonds, body, &one, &particles.poses, &rotation))
-                .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
+                .map_err(|error| within(error, scene, name, entry, <[std::path::PathBuf]>::last))?;
         }
         _ if !body.bonds.is_empty() && !stays_rigid(scene, name) => {
             return Err(Diagnostic::input(
@@ -150,7 +150,7 @@ fn place_particles(
         let i = first_particle + at;
         particles.ids[i] = (first_particle + original) as u32;
         check_particle(original, particles, i)
-            .map_err(|error| within(error, scene, name, entry, |files| files.first()))?;
+            .map_err(|error| within(error, scene, name, entry, <[std::path::PathBuf]>::first))?;
     }
     set_moving(entry, particles, first_particle);
     Ok(PlacedBody {

@@ -125,7 +125,11 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
     let (mut particles, mut bonds) = (Particles::default(), Bonds::default());
     let placed = place_body(scene, name, &in_file, body, &mut particles, &mut bonds)?;
     let centres: Vec<[f64; 3]> = particles.poses.iter().map(|p| p.place().into()).collect();
-    let radii: Vec<f64> = particles.poses.iter().map(|p| p.radius_m()).collect();
+    let radii: Vec<f64> = particles
+        .poses
+        .iter()
+        .map(dem_engine::state::particles::Pose::radius_m)
+        .collect();
     let masses: Vec<f64> = particles
         .motions
         .iter()

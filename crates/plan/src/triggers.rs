@@ -194,7 +194,10 @@ fn is_away(region: &Region, state: &State) -> bool {
     let places = state.particles.poses.iter().map(Pose::place);
     let inlets = state.model.rules.inlets.iter();
     let inlets = inlets.map(|inlet| state.model.rules.regions[inlet.region].bounds());
-    let walls = state.walls.iter().map(|wall| wall.bounds_in_space());
+    let walls = state
+        .walls
+        .iter()
+        .map(dem_engine::state::walls::Wall::bounds_in_space);
     let all = inlets
         .chain(walls)
         .fold(Bounds::of(places), |all, one| all.with(&one));

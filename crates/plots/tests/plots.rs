@@ -74,7 +74,7 @@ fn read(text: &str) -> Picture {
                 match name.as_str() {
                     "svg" => picture.height = number(&element, "height"),
                     "rect" if attribute(&element, "class") == "area" => {
-                        picture.area = rectangle(&element)
+                        picture.area = rectangle(&element);
                     }
                     "rect" if open.last().is_some_and(|(_, class)| class == "legend") => {
                         picture.legend = Some(rectangle(&element));

@@ -28,7 +28,7 @@ use dem_plan::measure::{Probe, read_probes, renumber as renumber_probes};
 use dem_results::Balance;
 
 /// Wall time between two checkpoints unless the scene sets an interval.
-const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
+const CHECKPOINT_EVERY: Duration = Duration::from_mins(1);
 
 /// Why a run ended that went on to its end time.
 pub(super) const AT_END_TIME: &str = "end time";

@@ -114,7 +114,7 @@ pub(crate) fn work(state: &State) -> [usize; 4] {
         .scratch
         .partitions
         .iter()
-        .map(|partition| partition.own_bonds())
+        .map(dem_engine::state::partitions::Partition::own_bonds)
         .sum();
     [
         bonds,

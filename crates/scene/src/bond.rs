@@ -378,7 +378,7 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     listing.table("failure", &FAILURE, |listing| kind.failure.list(listing));
     if let Some(plasticity) = &kind.plasticity {
         listing.table("plasticity", &PLASTICITY, |listing| {
-            plasticity.list(listing)
+            plasticity.list(listing);
         });
     }
     listing.value("contact_beside_bond", &kind.contact_beside_bond);

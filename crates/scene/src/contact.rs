@@ -316,7 +316,7 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
     }
     if let Some(bridge) = &contact.liquid_bridge {
         listing.table("liquid_bridge", &LIQUID_BRIDGE, |listing| {
-            bridge.list(listing)
+            bridge.list(listing);
         });
     }
 }

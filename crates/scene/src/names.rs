@@ -33,10 +33,8 @@ fn of_other_programs<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     // E is a modulus, e a coefficient of restitution.
     let is_name = |other: &&str| *other == name || (other.len() > 1 && *other == lower);
     let of_line = |(_, others): &&(&str, &[&str])| others.iter().any(&is_name);
-    let meant = OTHER_NAMES.iter().filter(of_line);
-    meant
-        .filter_map(|(ours, _)| known.iter().find(|known| *known == ours).copied())
-        .next()
+    let mut meant = OTHER_NAMES.iter().filter(of_line);
+    meant.find_map(|(ours, _)| known.iter().find(|known| *known == ours).copied())
 }
 
 /// Our names, and those of other programs (LAMMPS, YADE, PFC, EDEM, MUSEN) and of textbooks.

@@ -121,8 +121,8 @@ pub(crate) fn one_particle() -> Result<Vec<Member>> {
     for start_as in ["bonded", "clump"] {
         for restitution in [1.0, 0.5] {
             let impact = Impact {
-                start_as,
                 restitution,
+                start_as,
                 ..Impact::usual()
             };
             members.push(impact.member(format!("{start_as}, restitution {restitution}")));

@@ -54,7 +54,7 @@ fn a_value_that_is_off_by_little_is_found() {
     let said = wrong(&blow, |blow| values(blow)[2].value -= 1.0);
     assert_eq!(said, "broken bonds is off");
     let said = wrong(&blow, |blow| {
-        values(blow)[3].quantity = Quantity::Measure("unknown")
+        values(blow)[3].quantity = Quantity::Measure("unknown");
     });
     assert_eq!(said, "unknown is off");
 }
@@ -105,7 +105,7 @@ fn an_explosion_for_want_of_relaxation_is_found() {
     for what in ["overlap 0.25", "overlap 0.9"] {
         let good = member("overlap", what);
         let said = wrong(&good, |good| {
-            good.trial.scene += "relaxation.enabled = false\n"
+            good.trial.scene += "relaxation.enabled = false\n";
         });
         assert!(
             said.starts_with("was stopped: ") && said.contains("set relaxation.enabled = true"),
@@ -155,7 +155,7 @@ fn the_wrong_cause_is_found() {
 fn spins_that_lose_and_bodies_that_creep_are_found() {
     let spin = member("spin", "undamped");
     let said = wrong(&spin, |spin| {
-        replace(&mut spin.trial, "damping_ratio = 0", "damping_ratio = 0.01")
+        replace(&mut spin.trial, "damping_ratio = 0", "damping_ratio = 0.01");
     });
     assert_eq!(said, "elastic_energy is off");
     let rest = member("rest", "a tetrahedron on a slope of 15 degrees, clump");

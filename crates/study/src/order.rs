@@ -48,10 +48,10 @@ pub(crate) fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {
                 };
                 if let (Some(order), Some(&first)) = (order, members.first()) {
                     let mut others = runs[first].labels(study);
-                    if !group(study, &runs[first], along).is_empty() {
-                        others.remove(along);
-                    } else {
+                    if group(study, &runs[first], along).is_empty() {
                         others.clear();
+                    } else {
+                        others.remove(along);
                     }
                     found.push(Order {
                         measure: of.name.clone(),

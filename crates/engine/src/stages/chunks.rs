@@ -33,7 +33,7 @@ pub(crate) fn in_tasks<T: Default + Send>(
     }
     let own = &mut buffers[..count];
     for_each(own.iter_mut().enumerate(), |(task, buffer)| {
-        work(task, buffer)
+        work(task, buffer);
     });
     own
 }

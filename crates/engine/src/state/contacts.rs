@@ -205,7 +205,7 @@ impl Contacts {
         let chunks = chunks.zip(remembers.chunks_mut(RELISTED_AT_ONCE));
         let chunks = chunks.zip(pairs.chunks(RELISTED_AT_ONCE));
         for_each(chunks, |((new, remember), pairs)| {
-            relist_chunk(new, remember, pairs)
+            relist_chunk(new, remember, pairs);
         });
         self.scratch.former_histories = std::mem::replace(&mut self.histories, histories);
         self.scratch.former_pairs = std::mem::replace(&mut self.pairs, pairs);

@@ -37,7 +37,10 @@ pub(super) fn split(corners: &[[f64; 3]], facets: &mut Vec<Facet>) -> Result<(),
     }
     let first = Vector3::from(corners[0]);
     let points: Vec<Vector3<f64>> = corners.iter().map(|c| Vector3::from(*c) - first).collect();
-    let size = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let size = points
+        .iter()
+        .map(nalgebra::Matrix::norm)
+        .fold(0.0, f64::max);
     let next = |k: usize| points[(k + 1) % points.len()];
     let all = 0..points.len();
     // Newell's normal: twice the area of the polygon.

@@ -165,7 +165,7 @@ fn each_of_bytes(
                 Number::Float(f32::from_le_bytes(b).into())
             })?,
             Scalar::Float64 => {
-                each_chunk(chunk, &mut take, |b| Number::Float(f64::from_le_bytes(b)))?
+                each_chunk(chunk, &mut take, |b| Number::Float(f64::from_le_bytes(b)))?;
             }
         }
     }

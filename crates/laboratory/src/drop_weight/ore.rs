@@ -266,7 +266,7 @@ fn doubts_of(fit: &T10Fit, fits_size: bool, has_broken: bool, largest: f64) -> V
                 .to_owned(),
         ),
         EnergyFrom::TooFewTests => {
-            doubts.push("too few tests for a smallest energy: it is written as 0, which the intervals take for granted".to_owned())
+            doubts.push("too few tests for a smallest energy: it is written as 0, which the intervals take for granted".to_owned());
         }
     }
     if !has_broken {

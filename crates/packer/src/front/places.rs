@@ -73,7 +73,7 @@ impl Assembly<'_> {
         neighbours.clear();
         self.grid
             .near([initial[0], initial[1], initial[2]], gap, |cell| {
-                neighbours.gather(initial, cell, reduced)
+                neighbours.gather(initial, cell, reduced);
             });
         neighbours.gather(initial, assembled, reduced);
         neighbours.sort();

@@ -151,9 +151,9 @@ impl Assembly<'_> {
         for _ in 0..52 {
             let middle = 0.5 * (fits + fits_not);
             if self.radius(middle) <= radius {
-                fits = middle
+                fits = middle;
             } else {
-                fits_not = middle
+                fits_not = middle;
             }
         }
         fits

@@ -100,7 +100,7 @@ fn broken(start: Start, fall: impl Fn(i32) -> Result<Fall, Failed>) -> Result<Br
         rung = match (low, high) {
             (None, _) => rung - step,
             (_, None) => rung + step,
-            (Some(low), Some((high, _))) if high - low > 1 => (low + high) / 2,
+            (Some(low), Some((high, _))) if high - low > 1 => i32::midpoint(low, high),
             (_, Some(high)) => break high,
         };
         step *= 2;

@@ -120,7 +120,7 @@ fn sample(results: &Path) -> Table {
         "Platzer 2022, 3.2.3 |  | 77,487 | 377,052 | 4.87 | 132 s; 780 min by filling",
     )];
     for samples in samples::counted() {
-        let reports = results_of(results, samples.iter().map(|sample| sample.name()));
+        let reports = results_of(results, samples.iter().map(super::samples::Sample::name));
         let quality: Vec<Value> = reports
             .iter()
             .map(|report| report["quality"].clone())
@@ -188,7 +188,10 @@ fn bent_cells(runs: &[Run]) -> Vec<String> {
     let within = tests
         .iter()
         .filter_map(|test| Some(test.crack.as_ref()?.fraction_within));
-    let times: Vec<f64> = runs.iter().map(|run| run.processor_s()).collect();
+    let times: Vec<f64> = runs
+        .iter()
+        .map(super::super::bench::Run::processor_s)
+        .collect();
     vec![
         runs.len().to_string(),
         figure("stiffness", 1e-3, 2),

@@ -46,14 +46,14 @@ impl Grids {
     pub fn fill(&mut self, active: &[(u32, Ball)]) {
         self.levels.resize_with(MOST_LEVELS, Grid::default);
         self.largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
-        for level in self.levels.iter_mut() {
+        for level in &mut self.levels {
             level.members.clear();
         }
         for (place, (_, ball)) in (0..).zip(active) {
             let level = self.level_of(ball[3]);
             self.levels[level].members.push(place);
         }
-        for level in self.levels.iter_mut() {
+        for level in &mut self.levels {
             level.fill(active);
         }
     }

@@ -282,7 +282,7 @@ impl Bar {
 
     fn energy_j(&self) -> f64 {
         let squares = |vectors: &[Vector3<f64>]| -> f64 {
-            vectors.iter().map(|vector| vector.norm_squared()).sum()
+            vectors.iter().map(nalgebra::Matrix::norm_squared).sum()
         };
         0.5 * (MASS_KG * squares(&self.velocities) + INERTIA_KG_M2 * squares(&self.spins))
             + self.elastic_j()
@@ -309,7 +309,7 @@ fn tip_of_cantilever(model: BondModel) -> f64 {
     }
     let fastest = bar.velocities[1..]
         .iter()
-        .map(|v| v.norm())
+        .map(nalgebra::Matrix::norm)
         .fold(0.0, f64::max);
     assert!(fastest < 1e-9, "not at rest: {fastest} m/s");
     bar.places[SPHERES - 1].y

@@ -41,7 +41,7 @@ pub(super) fn book_model(
 /// finite.
 fn reach_m(state: &State) -> f64 {
     let poses = state.particles.poses.iter();
-    let bodies = Bounds::of(poses.map(|pose| pose.place()));
+    let bodies = Bounds::of(poses.map(dem_engine::state::particles::Pose::place));
     let regions = state.model.rules.regions.iter();
     let regions = regions.map(dem_physics::geometry::region::Region::bounds);
     let all = regions.fold(bodies, |all, region| match region.diagonal_m() {

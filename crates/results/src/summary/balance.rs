@@ -125,7 +125,7 @@ pub struct Energy {
 /// energy error alone.
 pub const ENERGIES: [Energy; 20] = [
     energy("kinetic_energy_j", Stored, |balance| balance.kinetic_j),
-    energy("elastic_energy_j", Stored, |balance| balance.elastic_j()),
+    energy("elastic_energy_j", Stored, Balance::elastic_j),
     energy("gravity_energy_j", Stored, |balance| balance.gravity_j),
     energy("load_work_j", Work, |balance| balance.load_work_j),
     energy("support_work_j", Work, |balance| balance.support_work_j),

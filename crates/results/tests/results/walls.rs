@@ -201,7 +201,7 @@ fn damaged_walls_are_refused() {
     let mut changed = whole.clone();
     changed[at + many.len() - 2] = b'2';
     fs::write(&path, &changed).unwrap();
-    assert!(read_walls(&path).unwrap_err().problem.contains("2"));
+    assert!(read_walls(&path).unwrap_err().problem.contains('2'));
 }
 
 proptest! {

@@ -89,7 +89,7 @@ fn counted(books: &Books) -> [usize; 3] {
     assert_eq!((come.bodies as usize, gone.bodies as usize), (came, left));
     assert_eq!(state.population.replaced as usize, replaced);
     let inside = mass_inside_kg(state);
-    let wanted = come.bodies as f64 * state.clumps.templates[0].mass_kg;
+    let wanted = f64::from(come.bodies) * state.clumps.templates[0].mass_kg;
     assert!((come.mass_kg / wanted - 1.0).abs() < 1e-13);
     assert!(((inside + gone.mass_kg) / come.mass_kg - 1.0).abs() < 1e-12);
     assert!((state.ledger.mass_kg() - inside).abs() < 1e-12 * come.mass_kg);

@@ -187,7 +187,11 @@ fn a_rod_that_lands_on_an_end_turns_round_there_as_its_material_says() {
                 planned(&text.replace("restitution", "friction = 0, restitution"));
             let worst = bounce(&mut state, |_| ());
             let clump = state.clumps.all[0];
-            let lowest = state.particles.poses.iter().map(|pose| pose.place());
+            let lowest = state
+                .particles
+                .poses
+                .iter()
+                .map(dem_engine::state::particles::Pose::place);
             let lowest = lowest.min_by(|a, b| a.z.total_cmp(&b.z)).unwrap();
             let up = velocity_at(&state, &clump, &lowest).z;
             eprintln!("{n} at {degrees}: {law} {restitution}: {up:.4}, energy {worst:.1e}");
@@ -276,7 +280,7 @@ fn packed(file: &str, law: &str, restitution: f64) -> (f64, usize, f64) {
     let Plan { mut state, .. } = planned(&with_floor(law, restitution, &entry(1.0 - there + 1e-6)));
     let mut most = 0;
     let worst = bounce(&mut state, |state| {
-        most = most.max(state.walls[0].touching.len())
+        most = most.max(state.walls[0].touching.len());
     });
     (state.clumps.all[0].velocity_m_s[2], most, worst)
 }

@@ -100,7 +100,12 @@ fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
     let spin = Vector3::from(motion.spin_rad_s);
     motion.velocity_m_s = (Vector3::from(motion.velocity_m_s) + spin.cross(&aside)).into();
     let (start, strain_j) = (whole(&state), elastic_energy(&state).total());
-    let places: Vec<Vector3<f64>> = state.particles.poses.iter().map(|p| p.place()).collect();
+    let places: Vec<Vector3<f64>> = state
+        .particles
+        .poses
+        .iter()
+        .map(dem_engine::state::particles::Pose::place)
+        .collect();
     let bonds = state.bonds.len();
     assert!(strain_j > 0.0);
     state.scratch.events.population.clear();

@@ -82,7 +82,9 @@ fn bits(state: &State) -> Vec<u64> {
 fn stuck(state: &State) -> usize {
     let histories = &state.contacts.as_ref().unwrap().histories;
     let within = 0.0..2.0 * at_rest_m(0.5 * RADIUS_M, 0.0);
-    let overlaps = histories.iter().map(|history| history.overlap_m());
+    let overlaps = histories
+        .iter()
+        .map(dem_engine::state::contacts::ContactHistory::overlap_m);
     overlaps
         .filter(|overlap_m| *overlap_m > 0.0 && within.contains(overlap_m))
         .count()
@@ -97,7 +99,9 @@ fn adhesion_has_its_own_energy() {
     }
     let books = step_and_balance(&mut state);
     let histories = &state.contacts.as_ref().unwrap().histories;
-    let overlaps = histories.iter().map(|history| history.overlap_m());
+    let overlaps = histories
+        .iter()
+        .map(dem_engine::state::contacts::ContactHistory::overlap_m);
     let overlaps_m: f64 = overlaps.filter(|overlap_m| *overlap_m > 0.0).sum();
     let wanted_j = -2.0 * PI * WORK * 0.5 * RADIUS_M * overlaps_m;
     assert!(wanted_j < 0.0);

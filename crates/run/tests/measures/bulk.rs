@@ -323,7 +323,7 @@ fn pieces_of_several_spheres_count_as_pieces() {
     let mut bonds: [Vec<[usize; 2]>; 2] = Default::default();
     for n in 0..32 * 32 * 8 {
         let k = usize::from(random.within(0.0, 1.0) < 0.5);
-        let [x, y, z] = [n % 8, n / 8 % 32, n / 256].map(|m| m as f64);
+        let [x, y, z] = [n % 8, n / 8 % 32, n / 256].map(f64::from);
         for j in 0..4 {
             if j > 0 {
                 bonds[k].push([sides[k].len() - 1, sides[k].len()]);

@@ -72,7 +72,7 @@ fn regular(lattice: &Lattice, cone: &Cone, shift: [f64; 2], turn_rad: f64) -> Ve
     let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * turn_rad);
     let reach = cone.radius() as i32 + 4;
     let mut layers = Vec::new();
-    for k in 0..(cone.height / lattice.layer) as i32 + 1 {
+    for k in 0..=((cone.height / lattice.layer) as i32) {
         let mut spheres = Vec::new();
         let f = f64::from(k % lattice.repeats);
         for i in -reach..=reach {

@@ -55,7 +55,7 @@ fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
             assert!(lost_j > 0.0);
             assert!(jump_j < 1e-3 * lost_j + 1e-13 * now.energy_scale_j);
         }
-        for news in state.scratch.events.sleep.iter() {
+        for news in &state.scratch.events.sleep {
             counts[usize::from(news.kind == "awake")] += 1;
             if news.kind == "asleep" {
                 before = Some(now);

@@ -19,11 +19,20 @@ fn step_to_rest(state: &mut State, size_m: f64) {
         load.factor = Factor::Ramp { until_s };
     }
     loop {
-        let before: Vec<Vector3<f64>> = state.particles.poses.iter().map(|p| p.place()).collect();
+        let before: Vec<Vector3<f64>> = state
+            .particles
+            .poses
+            .iter()
+            .map(dem_engine::state::particles::Pose::place)
+            .collect();
         for _ in 0..100 {
             step(state);
         }
-        let after = state.particles.poses.iter().map(|p| p.place());
+        let after = state
+            .particles
+            .poses
+            .iter()
+            .map(dem_engine::state::particles::Pose::place);
         let farthest = after
             .zip(before)
             .map(|(a, b)| (a - b).norm())

@@ -103,7 +103,11 @@ fn a_row_between_plates_is_a_rod_and_two_contacts() {
         .iter()
         .map(|row| travel_m(row.load_n()))
         .collect();
-    let loads: Vec<f64> = found.rows.iter().map(|row| row.load_n()).collect();
+    let loads: Vec<f64> = found
+        .rows
+        .iter()
+        .map(dem_rig::record::Row::load_n)
+        .collect();
     let stiffness = Line::fitted(&travels, &loads).slope;
     assert_near(
         found.figure("stiffness").unwrap(),

@@ -104,7 +104,7 @@ fn only_a_3mf_needs_no_unit() {
         assert!(scene.describe().contains("that of the file"));
     }
     for name in ["plate.stl", "plate.obj", "plate.ply"] {
-        let said = wall(name).unwrap_err().to_string();
+        let said = wall(name).unwrap_err().clone();
         assert!(said.contains("walls.plate.unit is missing"), "{said}");
     }
 }

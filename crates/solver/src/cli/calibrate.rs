@@ -313,7 +313,7 @@ impl Job<'_> {
         let names = self.packings.names();
         let test = |factors: &[f64], packing: usize, faster: f64| {
             let tested = bench.test(factors, packing, faster, &|fraction| {
-                tell(packing, fraction)
+                tell(packing, fraction);
             });
             tested.map_err(|error| error.within(&names[packing]))
         };

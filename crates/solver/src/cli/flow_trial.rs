@@ -61,12 +61,12 @@ impl FlowTrial {
                 following += began.elapsed();
                 copy.time_step_s = copy.time_step_s.min(plan.step.replaced.step_s);
             }
-            let spent_s = (clock.elapsed() - following).as_secs_f64();
+            let spent_s = clock.elapsed().saturating_sub(following).as_secs_f64();
             if spent_s >= samples[samples.len() - 1].spent_s + SAMPLE_S {
                 samples.push(sample(&copy, spent_s));
             }
         }
-        let spent_s = (clock.elapsed() - following).as_secs_f64();
+        let spent_s = clock.elapsed().saturating_sub(following).as_secs_f64();
         samples.push(sample(&copy, spent_s));
         Self {
             range_s: run_time_s(&samples, end_s),

@@ -108,7 +108,7 @@ pub(crate) fn of_case1() -> (String, [Plot; 2]) {
         "paper: off Timoshenko, %",
         "here: off Timoshenko, %",
     ]);
-    let none = || "".to_owned();
+    let none = || String::new();
     table += &row(&[
         "Timoshenko's theory".to_owned(),
         "8.534".to_owned(),

@@ -78,7 +78,7 @@ fn of_partition(
         };
         match which {
             BondSelection::Own(list) | BondSelection::Border(list) => {
-                list.iter().for_each(|&at| add(at as usize))
+                list.iter().for_each(|&at| add(at as usize));
             }
             BondSelection::Run(range) => range.clone().for_each(&mut add),
         }

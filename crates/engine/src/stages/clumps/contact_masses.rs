@@ -76,7 +76,7 @@ pub(crate) fn share_masses(state: &mut State) -> usize {
         first: free,
     };
     for_each(part.divided(), |part| {
-        part.set_masses(&state.clumps, &p.poses)
+        part.set_masses(&state.clumps, &p.poses);
     });
     0
 }
@@ -100,7 +100,7 @@ impl Seen<'_> {
             (partition, own.unwrap_or_default())
         });
         for_each(parts, |(partition, touches)| {
-            self.add_partition(partition, touches)
+            self.add_partition(partition, touches);
         });
     }
 
@@ -209,7 +209,7 @@ struct Part<'a> {
     first: usize,
 }
 
-impl<'a> Part<'a> {
+impl Part<'_> {
     /// Divided into parts of as many clumps as a task handles.
     fn divided(self) -> impl Iterator<Item = Self> {
         let (mut first, end) = (self.first, self.first + self.touches.len());

@@ -46,7 +46,7 @@ pub(crate) fn kick_particles(state: &mut State) -> usize {
     let chunks = motions[..p.free].chunks_mut(CHUNK).enumerate();
     for_each(chunks, |(chunk, motions)| {
         for_each_awake(chunk * CHUNK, motions, &p.asleep, |i, motion| {
-            forces.kick(i, motion)
+            forces.kick(i, motion);
         });
     });
     state.particles.motions = motions;

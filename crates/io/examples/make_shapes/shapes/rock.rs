@@ -16,7 +16,7 @@ pub(crate) fn ball(centre: [f64; 3], radius: f64, times: u32) -> Mesh {
 
 /// The same of radius 1 about the origin.
 fn directions(times: u32) -> Mesh {
-    let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut mesh = Mesh::default();
     for (a, b) in [
         (-1.0, golden),

@@ -139,8 +139,7 @@ pub fn minimise_overlaps(
             return Err(Diagnostic::failed(
                 "--densify",
                 format!(
-                    "the spheres still overlap by {:.1e} of their radius after {MOST_STEPS} steps",
-                    worst
+                    "the spheres still overlap by {worst:.1e} of their radius after {MOST_STEPS} steps"
                 ),
                 "use a smaller fraction, or --densify 0 for the bare front",
             ));

@@ -311,6 +311,9 @@ fn studies_of_laboratory_tests_bodies_and_full_folders_are_refused() {
         &bench,
         &["export", "lammps", "scene.toml", "-o", "full"],
     ));
-    assert!(code == 2 && said.contains("full: this folder is not empty"), "{said}");
+    assert!(
+        code == 2 && said.contains("full: this folder is not empty"),
+        "{said}"
+    );
     assert_eq!(fs::read_dir(bench.path("full")).unwrap().count(), 1);
 }
