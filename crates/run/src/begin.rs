@@ -63,6 +63,8 @@ pub(super) struct Planned {
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
     pub(super) coarse: Vec<String>,
+    /// Whether the spheres of all bodies that can break are grains.
+    pub(super) is_granular: bool,
     pub(super) inputs: Inputs,
     /// Change of the time step in a resumed run.
     pub(super) changed_step: Option<String>,
@@ -135,6 +137,7 @@ impl<'a> Run<'a> {
                 masses: plan.masses,
                 notes: plan.notes,
                 coarse: plan.coarse,
+                is_granular: plan.is_granular,
                 warnings: plan.warnings,
                 inputs: plan.inputs,
                 changed_step: changed_step.map(|new| new.detail),
