@@ -20,7 +20,8 @@ use super::record::{Record, Row};
 use dem_engine::state::loads::factor_at;
 use dem_laboratory::figure::{Figure, Source};
 use dem_laboratory::test_result::{
-    EQUILIBRIUM, INCREASE_FACTOR, LARGEST_FRAGMENT, LARGEST_T10, STRAIN_RATE, T10, TestResult, UNBOOKED,
+    EQUILIBRIUM, INCREASE_FACTOR, LARGEST_FRAGMENT, LARGEST_T10, STRAIN_RATE, T10, TestResult,
+    UNBOOKED,
 };
 use dem_physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 

@@ -114,7 +114,9 @@ fn has_neck(test: &Test, body_m: f64, volume_m3: Option<f64>) -> bool {
     let is_narrow = || {
         let area_m2 = test.area_m2.filter(|_| test.length_m.is_some());
         let mean_m2 = volume_m3.map(|volume_m3| volume_m3 / body_m);
-        area_m2.zip(mean_m2).is_some_and(|(area, mean)| area < NARROW * mean)
+        area_m2
+            .zip(mean_m2)
+            .is_some_and(|(area, mean)| area < NARROW * mean)
     };
     match test.kind {
         TestType::DogBone => true,

@@ -244,8 +244,10 @@ impl Template {
             Self::Drop => {
                 // Waves cross the body in a time that goes with its size.
                 let impact = 1e-3 * (size / 30e-3) * (body.density_kg_m3 / 1500.0).sqrt();
+                // Chips of a higher fall roll below the body for longer.
+                let end = 4.0 * impact * situation_si.clamp(1.0, 3.0);
                 let height = ("height", Value::length(situation_si));
-                vec![height, ("impact", Value::new(impact, "s"))]
+                vec![height, ("end", Value::new(end, "s"))]
             }
             Self::DropWeight => {
                 let impact = 1e-3 * (size / 40e-3) * (body.density_kg_m3 / 2650.0).sqrt();
