@@ -271,7 +271,11 @@ impl Template {
             }
             Self::Crusher => {
                 let nip = HEIGHT_OVER_WIDTH * (1.06 * x - situation_si);
+                // A lump falls by its own size in a time that goes with the root of its size.
+                let stroke = 0.2 * (size / 60e-3).sqrt();
                 vec![
+                    ("stroke", Value::new(stroke, "s")),
+                    ("frequency", Value::new(1.0 / stroke, "Hz")),
                     ("gap", Value::length(situation_si)),
                     ("nip", Value::length(nip)),
                     ("top", Value::length(nip + 1.3 * z)),
