@@ -117,7 +117,6 @@ impl<'a> Run<'a> {
                 continued: is_continued.then_some(&progress),
             })?,
         };
-        let began = Instant::now();
         let mut run = Self {
             scene,
             settings,
@@ -131,7 +130,7 @@ impl<'a> Run<'a> {
             outputs,
             fingerprint,
             is_checkpoint_due: false,
-            saved: began,
+            saved: Instant::now(),
             planned: Planned {
                 stages: plan.stages,
                 masses: plan.masses,
@@ -145,7 +144,7 @@ impl<'a> Run<'a> {
             first_step: state.steps,
             first_time_s: state.time_s,
             state,
-            began,
+            began: Instant::now(),
             processor_before_s: processor_time_s(),
         };
         if !run.limits.new_steps.is_empty() {

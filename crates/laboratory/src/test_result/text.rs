@@ -58,8 +58,8 @@ impl TestResult {
         doubts
     }
 
-    /// Whether most of the crack, or its middle, is elsewhere than the test requires. None: the type
-    /// of test requires no place.
+    /// Whether most of the crack, or its middle, is elsewhere than the test requires. None: this
+    /// type of test requires no place.
     pub(super) fn is_misplaced(&self, crack: &Crack) -> Option<bool> {
         match self.kind {
             TestType::DogBone | TestType::HopkinsonTension => {

@@ -21,8 +21,8 @@ pub(super) const QUIET: f64 = 0.2;
 pub(crate) struct Flying {
     /// The note or warning.
     pub(crate) text: String,
-    /// Whether breakage may not be over: something that can break touches something, and bonds
-    /// have broken not long ago. Otherwise what has been simulated is complete, and a later impact is
+    /// Whether breakage may not be over: something that can break touches something, and bonds have
+    /// broken not long ago. Otherwise what has been simulated is complete, and a later impact is
     /// another question.
     pub(crate) may_break: bool,
 }

@@ -269,18 +269,7 @@ impl Template {
                     ("rate", Value::new(0.2 * situation_si / size, "/s")),
                 ]
             }
-            Self::Crusher => {
-                let nip = HEIGHT_OVER_WIDTH * (1.06 * x - situation_si);
-                // A lump falls by its own size in a time that goes with the root of its size.
-                let stroke = 0.2 * (size / 60e-3).sqrt();
-                vec![
-                    ("stroke", Value::new(stroke, "s")),
-                    ("frequency", Value::new(1.0 / stroke, "Hz")),
-                    ("gap", Value::length(situation_si)),
-                    ("nip", Value::length(nip)),
-                    ("top", Value::length(nip + 1.3 * z)),
-                ]
-            }
+            Self::Crusher => crusher_values(body, situation_si),
             Self::Mill => vec![
                 ("speed", Value::new(situation_si, "rad/s")),
                 ("radius", Value::length(drum_radius_m(body))),
@@ -364,6 +353,20 @@ fn deck(body: &Measured, opening_m: f64) -> Deck {
         bar,
         thickness: 0.25 * size,
     }
+}
+
+fn crusher_values(body: &Measured, gap_m: f64) -> Vec<(&'static str, Value)> {
+    let [x, _, z] = body.extent_m;
+    let nip = HEIGHT_OVER_WIDTH * (1.06 * x - gap_m);
+    // A lump falls by its own size in a time that goes with the root of its size.
+    let stroke = 0.2 * (body.size_m() / 60e-3).sqrt();
+    vec![
+        ("stroke", Value::new(stroke, "s")),
+        ("frequency", Value::new(1.0 / stroke, "Hz")),
+        ("gap", Value::length(gap_m)),
+        ("nip", Value::length(nip)),
+        ("top", Value::length(nip + 1.3 * z)),
+    ]
 }
 
 fn screen_values(body: &Measured, opening_m: f64) -> Vec<(&'static str, Value)> {
