@@ -31,14 +31,16 @@ const WAYS: [(&str, &str); 5] = [
 /// Diameters of their spheres in the comparison of ways, and in the runs with 300 bodies.
 const OF_WAYS: &str = "12mm..15mm";
 const OF_MINUTE: &str = "15mm..18mm";
-/// The runs with 300 bodies: their product belts, and what else they set.
-const PRODUCT_BELTS: [&str; 2] = ["0.1 m/s", "20 mm/s"];
-/// The runs with 300 bodies take the soft cake of the thesis, and as soft a rock, for their steps.
-const CAKE_OF_MINUTE: &str = "--material=data/materials/filter-cake-table-2.toml";
-const MINUTE: [&str; 7] = [
-    "run.end_time=\"60 s\"",
+/// All take the soft cake of the thesis, and as soft a rock, for long steps.
+const CAKE: &str = "--material=data/materials/filter-cake-table-2.toml";
+const SOFT: [&str; 2] = [
     "run.impact_accuracy=0.02",
     "materials.rock.shear_modulus=\"10 MPa\"",
+];
+/// The runs with 300 bodies: their product belts, and what else they set.
+const PRODUCT_BELTS: [&str; 2] = ["0.1 m/s", "20 mm/s"];
+const MINUTE: [&str; 5] = [
+    "run.end_time=\"60 s\"",
     "measures.mixing={of=\"cake\",with=\"rock\",quantity=\"mixing_index\",within=\"on-product-belt\",cell_size=\"0.3 m\"}",
     "output.frames=\"5 s\"",
     "output.series=\"0.1 s\"",
@@ -70,10 +72,16 @@ const ROWS: [&str; 13] = [
     "fed, less left and inside",
 ];
 
+/// Ways with and without the DIF; without breakage it counts for nothing.
+fn ways() -> impl Iterator<Item = (usize, bool)> {
+    let all = (0..WAYS.len()).flat_map(|way| [(way, true), (way, false)]);
+    all.filter(|case| *case != (0, false))
+}
+
 pub(crate) fn tables() -> [Table; 3] {
     let of =
         |head, first_cells: Vec<String>| Table::new("doc/process.md", "process", head, first_cells);
-    let of_ways = "cakes and lumps are | processor time | bonds broken | pieces | \
+    let of_ways = "cakes and lumps are | DIF | processor time | bonds broken | pieces | \
         cake: d10, d50, d80, mm | lump: d10, d50, d80, mm | left with the product | \
         energy error";
     let minute = "a minute of the process | product belt 0.1 m/s | product belt 20 mm/s";
@@ -86,7 +94,10 @@ pub(crate) fn tables() -> [Table; 3] {
     let left = [": cake", ": lump", ": rock", ", in all"];
     flows.extend(left.map(|what| format!("discharged through `product`{what}")));
     [
-        of(of_ways, WAYS.map(|(way, _)| way.to_owned()).to_vec()),
+        of(
+            of_ways,
+            ways().map(|(way, _)| WAYS[way].0.to_owned()).collect(),
+        ),
         of(minute, ROWS.map(str::to_owned).to_vec()),
         of("mass flow | kg/s", flows),
     ]
@@ -102,15 +113,10 @@ fn packed(bench: &Bench, diameters: &str) -> Result<[PathBuf; 2], Failed> {
 }
 
 /// Runs the scene with these bodies and values on one thread.
-fn run(
-    bench: &Bench,
-    name: &str,
-    files: &[PathBuf; 2],
-    set: &[String],
-    more: &[&str],
-) -> Result<Run, Failed> {
+fn run(bench: &Bench, name: &str, files: &[PathBuf; 2], set: &[String]) -> Result<Run, Failed> {
     let mut options = sets(set);
-    options.extend(more.iter().map(|&option| option.to_owned()));
+    options.extend(sets(&SOFT));
+    options.push(CAKE.to_owned());
     for ((name, _), file) in BREAKABLE.iter().zip(files) {
         options.push(body(name, file));
     }
@@ -121,10 +127,16 @@ fn run(
 pub(crate) fn process(bench: &Bench) -> Result<(), Failed> {
     let [mut of_ways, mut of_minute, mut of_flows] = tables();
     let files = packed(bench, OF_WAYS)?;
-    for (number, (_, replacement)) in WAYS.iter().enumerate() {
-        let set = BREAKABLE.map(|(body, _)| format!("replacement.{body}={replacement}"));
-        let found = run(bench, &format!("way-{number}"), &files, &set, &[])?;
+    for (way, has_dif) in ways() {
+        let mut set = BREAKABLE
+            .map(|(body, _)| format!("replacement.{body}={}", WAYS[way].1))
+            .to_vec();
+        if !has_dif {
+            set.push("bonds.cake.failure.rate_strengthening=false".to_owned());
+        }
+        let found = run(bench, &format!("way-{way}-{has_dif}"), &files, &set)?;
         of_ways.row([
+            if has_dif { "yes" } else { "no" }.to_owned(),
             format!("{:.0} s", found.processor_s()),
             broken(&found, &files)?,
             found.fragments().count.to_string(),
@@ -141,7 +153,7 @@ pub(crate) fn process(bench: &Bench) -> Result<(), Failed> {
             "walls.product-belt.surface_velocity=[\"{speed}\",0,0]"
         ));
         let name = format!("minute-{}", speed.replace([' ', '/'], "-"));
-        run(bench, &name, &files, &set, &[CAKE_OF_MINUTE])
+        run(bench, &name, &files, &set)
     });
     let [fast, slow] = [fast?, slow?];
     for (fast, slow) in minute(&fast).into_iter().zip(minute(&slow)) {
