@@ -74,8 +74,14 @@ const CASES: [Case; 8] = [
     },
     Case {
         name: "process",
-        title: "`process.toml`",
+        title: "`process.toml` with the soft cake of doc/process.md",
         scene: "process",
+        set: &[
+            "run.impact_accuracy=0.02",
+            "materials.cake.shear_modulus=\"10 MPa\"",
+            "materials.rock.shear_modulus=\"10 MPa\"",
+            "bonds.cake.failure={von_mises_strength=\"0.185 MPa\",equivalent_stress=\"forces-only\",rate_strengthening=\"1.1 /s\",strain_rate_measure=\"relative-velocity\"}",
+        ],
         between_s: [0.0, 3.0],
         beside: None,
         ..USUAL

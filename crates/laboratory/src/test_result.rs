@@ -1,5 +1,6 @@
 //! The result of a laboratory test as data: its figures, the first broken bond, the crack.
 
+mod answer;
 mod text;
 
 use dem_physics::bond::failure::Cause;
@@ -10,6 +11,14 @@ use crate::specimen::TestType;
 
 /// Names of figures that are looked up: ratio of load to travel.
 pub const STIFFNESS: &str = "stiffness";
+/// Of the body alone, without its contacts.
+pub const MODULUS: &str = "specimen modulus";
+/// Largest stress of a body that broke.
+pub const STRENGTH: &str = "strength";
+/// Largest load on a body that did not break, or of a weight.
+pub const LARGEST_FORCE: &str = "largest force";
+/// Share of the mass of the largest fragment.
+pub const LARGEST_FRAGMENT: &str = "largest fragment";
 /// Largest deviation of a lateral pressure from the one wanted, up to the largest load.
 pub const PRESSURE_OFF: &str = "deviation of the lateral pressure";
 /// Rate of strain while the load rises, 1/s.

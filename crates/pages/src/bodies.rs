@@ -2,6 +2,7 @@
 //! tension.
 
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use dem_io::Body;
 use dem_io::body::{body_summary, read_body};
@@ -23,7 +24,7 @@ struct Bar {
 /// Layer of particles that a grip holds at each end, in mean diameters.
 const GRIP: f64 = 1.05;
 
-const BARS: [Bar; 8] = [
+const BARS: [Bar; 9] = [
     bar(
         "chute, chute-bonded, chute-region",
         "scenes/chute.toml",
@@ -32,7 +33,12 @@ const BARS: [Bar; 8] = [
     ),
     bar("one-cake", "scenes/one-cake.toml", "lump", 2),
     bar("jaw-crusher", "scenes/jaw-crusher.toml", "lump", 2),
-    bar("transfer-chute", "scenes/transfer-chute.toml", "lump", 2),
+    bar(
+        "transfer-chute, process",
+        "scenes/transfer-chute.toml",
+        "lump",
+        2,
+    ),
     bar("drop-height", "scenes/drop-height.toml", "lump", 2),
     bar("repeated-drops", "scenes/repeated-drops.toml", "lump", 2),
     bar(
@@ -42,7 +48,11 @@ const BARS: [Bar; 8] = [
         0,
     ),
     bar("stalk-cut", "scenes/stalk-cut.toml", "stalk", 2),
+    bar("clamped", "scenes/clamped.toml", PACKED, 0),
 ];
+/// A body of `clamped.toml`, which is packed: its shape and diameters.
+const PACKED: &str = "bending-sample";
+const PACKED_DIAMETERS: &str = "--diameter=4mm..6mm";
 
 const fn bar(scenes: &'static str, bonds: &'static str, body: &'static str, axis: usize) -> Bar {
     Bar {
@@ -64,17 +74,21 @@ pub(crate) fn bodies(bench: &Bench) -> Result<(), Failed> {
     let mut table = table();
     for (number, bar) in BARS.iter().enumerate() {
         let scene = bench.folder.join(format!("bar-{number}.toml"));
-        std::fs::write(&scene, scene_of(bar)?)?;
+        let file = file_of(bench, bar)?;
+        let body: Body = read_body(&file)?;
+        std::fs::write(&scene, scene_of(bar, &file, &body)?)?;
         let name = format!("bar-{number}");
         let run = bench.run(&name, &scene.to_string_lossy(), &[ONE_THREAD.to_owned()])?;
-        let body: Body = read_body(&file_of(bar))?;
         let test = run.test()?;
         let mpa = |name: &str| {
             let value = test.figure(name);
             value.map_or("-".to_owned(), |value| significant(1e-6 * value, 3))
         };
         table.row([
-            format!("{}.vtp", bar.body),
+            match bar.body {
+                PACKED => format!("{PACKED}.stl, 4mm..6mm"),
+                body => format!("{body}.vtp"),
+            },
             significant(1e3 * body.mean_diameter_m(), 3),
             significant(body.about.particles_across.unwrap_or(f64::NAN), 2),
             mpa("specimen modulus"),
@@ -84,14 +98,16 @@ pub(crate) fn bodies(bench: &Bench) -> Result<(), Failed> {
     write(&[table])
 }
 
-fn file_of(bar: &Bar) -> std::path::PathBuf {
-    root().join(format!("data/bodies/{}.vtp", bar.body))
+fn file_of(bench: &Bench, bar: &Bar) -> Result<PathBuf, Failed> {
+    match bar.body {
+        PACKED => bench.pack(PACKED, PACKED, &[PACKED_DIAMETERS]),
+        body => Ok(root().join(format!("data/bodies/{body}.vtp"))),
+    }
 }
 
 /// The tension test of a bar, slow, with small steps.
-fn scene_of(bar: &Bar) -> Result<String, Failed> {
-    let body: Body = read_body(&file_of(bar))?;
-    let its = body_summary(&body);
+fn scene_of(bar: &Bar, file: &Path, body: &Body) -> Result<String, Failed> {
+    let its = body_summary(body);
     let [low_m, high_m] = [its.box_min_m, its.box_max_m].map(|corner| corner[bar.axis]);
     let grip_m = GRIP * body.mean_diameter_m();
     let text = std::fs::read_to_string(root().join("data").join(bar.bonds))?;
@@ -102,7 +118,7 @@ fn scene_of(bar: &Bar) -> Result<String, Failed> {
         "version = 1\n[run]\nlocal_damping = 0.02\nsafety_factor = 0.3\n{materials}{}\
          [bodies.bar]\nfile = {:?}\nmaterial = \"{material}\"\nbonds = \"{material}\"\n",
         tables(&text, "[bonds."),
-        file_of(bar)
+        file
     );
     if !materials.contains("density") {
         scene.push_str("body_density = \"2050 kg/m3\"\n");

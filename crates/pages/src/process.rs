@@ -31,6 +31,12 @@ const WAYS: [(&str, &str); 5] = [
 /// Diameters of their spheres in the comparison of ways, and in the runs with 300 bodies.
 const OF_WAYS: &str = "12mm..15mm";
 const OF_MINUTE: &str = "15mm..18mm";
+/// All take the soft cake of the thesis, and as soft a rock, for long steps.
+const CAKE: &str = "--material=data/materials/filter-cake-table-2.toml";
+const SOFT: [&str; 2] = [
+    "run.impact_accuracy=0.02",
+    "materials.rock.shear_modulus=\"10 MPa\"",
+];
 /// The runs with 300 bodies: their product belts, and what else they set.
 const PRODUCT_BELTS: [&str; 2] = ["0.1 m/s", "20 mm/s"];
 const MINUTE: [&str; 5] = [
@@ -109,6 +115,8 @@ fn packed(bench: &Bench, diameters: &str) -> Result<[PathBuf; 2], Failed> {
 /// Runs the scene with these bodies and values on one thread.
 fn run(bench: &Bench, name: &str, files: &[PathBuf; 2], set: &[String]) -> Result<Run, Failed> {
     let mut options = sets(set);
+    options.extend(sets(&SOFT));
+    options.push(CAKE.to_owned());
     for ((name, _), file) in BREAKABLE.iter().zip(files) {
         options.push(body(name, file));
     }

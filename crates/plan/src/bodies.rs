@@ -177,7 +177,12 @@ pub(crate) fn material_density_kg_m3(
 
 /// Density of the spheres of a body, kg/m3: that of its material, or the one that gives the mass in
 /// the scene.
-fn sphere_density_kg_m3(scene: &Scene, name: &str, entry: &BodyEntry, body: &Body) -> Result<f64> {
+pub(crate) fn sphere_density_kg_m3(
+    scene: &Scene,
+    name: &str,
+    entry: &BodyEntry,
+    body: &Body,
+) -> Result<f64> {
     let place = || format!("{}: [bodies.{name}]", scene.source);
     let mass_kg = match entry.whole_mass {
         None => {

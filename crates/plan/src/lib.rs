@@ -112,6 +112,9 @@ pub struct Plan {
     pub warnings: Vec<String>,
     /// Why the result depends on the size of the spheres, a sentence each.
     pub coarse: Vec<String>,
+    /// Whether all bodies that can break are granulates, whose bonds do not hold a sphere against
+    /// its weight: sizes of their fragments are those of their grains.
+    pub is_granular: bool,
     /// Forecast of the run, as far as possible.
     pub forecast: Forecast,
     /// Inputs of the plan, for the results.
@@ -201,6 +204,7 @@ pub fn plan(
         notes: told_once(notes, scene.bodies.keys()),
         warnings: told_once(warnings, scene.bodies.keys()),
         coarse: told_once(quality.coarse, scene.bodies.keys()),
+        is_granular: quality.is_granular,
         forecast,
         inputs,
     })

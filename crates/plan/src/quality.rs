@@ -10,7 +10,7 @@ use dem_io::units::significant;
 use dem_scene::{BodySource, Scene};
 use nalgebra::Vector3;
 
-use super::bodies::stays_rigid;
+use super::bodies::{sphere_density_kg_m3, stays_rigid};
 use dem_engine::stages::search::neighbours::near_pairs;
 use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
 use dem_engine::state::particles::Pose;
@@ -43,16 +43,21 @@ pub(super) struct Quality {
     pub(super) notes: Vec<String>,
     /// On bodies with few particles across, whose results depend on the particles.
     pub(super) coarse: Vec<String>,
+    /// Whether all bodies that can break are granulates.
+    pub(super) is_granular: bool,
 }
 
 /// The quality of all bodies that can deform or break. `read`: bodies by name.
 pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality {
     let mut quality = Quality::default();
+    let mut breakable = 0;
+    let mut granulates = 0;
     for (name, body) in read {
         if body.bonds.is_empty() || stays_rigid(scene, name) {
             continue;
         }
         let named = named(scene, name);
+        breakable += 1;
         let about = &body.about;
         let coarse = match about.particles_across {
             Some(_) => about.coarse(),
@@ -72,6 +77,11 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
             Calibrated::Here => None,
             Calibrated::Elsewhere(across) => Some(across),
         };
+        if let Some(note) = granulate(scene, name, body) {
+            quality.notes.push(format!("{named}: {note}"));
+            granulates += 1;
+            continue;
+        }
         match (coarse, specimen_across(scene, name, body)) {
             (None, _) => {}
             (Some(text), None) => quality.coarse.push(format!("{named}: {text}")),
@@ -81,7 +91,28 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
             )),
         }
     }
+    quality.is_granular = granulates > 0 && granulates == breakable;
     quality
+}
+
+/// A sentence on a body whose bonds cannot hold a sphere that hangs on one of them: it falls apart
+/// into its spheres, which are grains and not a resolution of pieces.
+fn granulate(scene: &Scene, name: &str, body: &Body) -> Option<String> {
+    let entry = scene.bodies.get(name)?;
+    let failure = &scene.bonds.get(entry.bond_kind.as_ref()?)?.failure;
+    let strengths = [failure.tensile_strength_pa, failure.von_mises_strength_pa];
+    let strength_pa = strengths.into_iter().flatten().reduce(f64::min)?;
+    let density_kg_m3 = sphere_density_kg_m3(scene, name, entry, body).ok()?;
+    let gravity_m_s2 = Vector3::from(scene.run.gravity_m_s2).norm();
+    // Weight of a sphere over its section.
+    let weight_pa = 2.0 / 3.0 * density_kg_m3 * gravity_m_s2 * body.mean_diameter_m();
+    (strength_pa < weight_pa).then(|| {
+        format!(
+            "its bonds of {} Pa do not hold the {} Pa of a sphere that hangs on one: its spheres count as grains, whose size does not make the result coarse",
+            significant(strength_pa, 3),
+            significant(weight_pa, 3)
+        )
+    })
 }
 
 /// Particles across a body whose test measures what its bonds and spheres make. None: it is in no

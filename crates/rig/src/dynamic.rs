@@ -20,7 +20,8 @@ use super::record::{Record, Row};
 use dem_engine::state::loads::factor_at;
 use dem_laboratory::figure::{Figure, Source};
 use dem_laboratory::test_result::{
-    EQUILIBRIUM, INCREASE_FACTOR, LARGEST_T10, STRAIN_RATE, T10, TestResult, UNBOOKED,
+    EQUILIBRIUM, INCREASE_FACTOR, LARGEST_FRAGMENT, LARGEST_T10, STRAIN_RATE, T10, TestResult,
+    UNBOOKED,
 };
 use dem_physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 
@@ -57,7 +58,7 @@ const DYNAMIC_RESULTS: [(&str, &Dimension); 12] = [
     ("absorbed energy", &units::ENERGY),
     ("specific absorbed energy", &units::ENERGY_PER_MASS),
     ("rebound velocity", &units::VELOCITY),
-    ("largest fragment", &units::NUMBER),
+    (LARGEST_FRAGMENT, &units::NUMBER),
     (T10, &units::NUMBER),
 ];
 
@@ -464,7 +465,7 @@ fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
         let absorbed = absorbed_j / pieces.mass_kg;
         found.add("specific absorbed energy", Some(absorbed), "J/kg");
         found.add(
-            "largest fragment",
+            LARGEST_FRAGMENT,
             Some(pieces.largest_kg / pieces.mass_kg),
             "",
         );

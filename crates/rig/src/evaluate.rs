@@ -354,15 +354,15 @@ const TRAVEL_AT_FAILURE: &str = "crosshead travel at failure";
 /// Modulus of a bar from the travel.
 pub const BY_TRAVEL: &str = "modulus by travel";
 /// Modulus of the body from its own deflection or elongation, including shear.
-pub const MODULUS: &str = "specimen modulus";
+pub const MODULUS: &str = dem_laboratory::test_result::MODULUS;
 /// Largest load before the body broke.
 pub const FAILURE_FORCE: &str = "failure force";
 /// Largest load of a body that did not break.
-pub const LARGEST_FORCE: &str = "largest force";
+pub const LARGEST_FORCE: &str = dem_laboratory::test_result::LARGEST_FORCE;
 /// Area between the measured and the simulated curve, over the area below the measured one.
 const APART: &str = "area between the curves";
 /// Stress at that force according to the formula of the test.
-pub const STRENGTH: &str = "strength";
+pub const STRENGTH: &str = dem_laboratory::test_result::STRENGTH;
 
 /// Names and dimensions of all results of quasi-static tests; each test has some of them.
 pub(crate) const RESULTS: [(&str, &Dimension); 18] = [

@@ -35,6 +35,8 @@ const ROUND: f64 = 1.25;
 const NEAR_DIAMETER: f64 = 0.1;
 /// Largest length or section of a test over that of the box around its body.
 const ABOUT: f64 = 1.1;
+/// Largest section of a test over the mean section of its body that is one of a neck.
+const NARROW: f64 = 0.7;
 
 /// Determines the arrangement from walls and body. `particles`: those of the tested body, in a
 /// state before the first step; `halves`: those that a direct shear test drives, and those
@@ -56,15 +58,17 @@ pub fn setup(
         .iter()
         .map(|&i| state.particles.poses[i as usize].radius_m());
     let mean_radius_m = radii.sum::<f64>() / particles.len().max(1) as f64;
+    let is_necked = has_neck(test, size(extent(&direction)), volume_m3);
     let found = match test.kind {
         TestType::FourPointBending | TestType::ThreePointBending => beam(scene, test, extent),
         TestType::BrazilianDisc | TestType::HopkinsonDisc => disc(test, direction, extent),
+        _ if is_necked => bar(test, direction, volume_m3, extent).map(dog_bone),
         TestType::Compression
         | TestType::Tension
+        | TestType::DogBone
         | TestType::HopkinsonPressure
         | TestType::HopkinsonTension
         | TestType::DropWeight => bar(test, direction, volume_m3, extent),
-        TestType::DogBone => bar(test, direction, volume_m3, extent).map(dog_bone),
         TestType::TriaxialCompression => {
             bar(test, direction, volume_m3, extent).map(|found| Setup {
                 sides: sides(scene, test, state, particles),
@@ -88,8 +92,8 @@ pub fn setup(
     };
     if let (Specimen::Bar { length_m, area_m2 }, true) = (setup.specimen, has_section(test.kind)) {
         let free_m = free_m(test, state, halves);
-        let sizes = ((length_m, area_m2), (volume_m3, free_m));
-        let looked = look_at_bar(scene, test, state, particles, sizes.0, sizes.1);
+        let (taken, of_body) = ((length_m, area_m2), (volume_m3, free_m));
+        let looked = look_at_bar(scene, test, state, particles, taken, of_body, is_necked);
         setup.section_m2 = looked.section_m2;
         setup.pressed = looked.pressed;
         setup.warnings.extend(looked.warnings);
@@ -102,6 +106,23 @@ pub fn setup(
     }
     choose_strip(&mut setup, state, particles);
     Ok(setup)
+}
+
+/// Whether length and area of a test are those of a neck: always those of a dog bone, and between
+/// bars those of a section much smaller than the mean one of the body. `body_m`: its length.
+fn has_neck(test: &Test, body_m: f64, volume_m3: Option<f64>) -> bool {
+    let is_narrow = || {
+        let area_m2 = test.area_m2.filter(|_| test.length_m.is_some());
+        let mean_m2 = volume_m3.map(|volume_m3| volume_m3 / body_m);
+        area_m2
+            .zip(mean_m2)
+            .is_some_and(|(area, mean)| area < NARROW * mean)
+    };
+    match test.kind {
+        TestType::DogBone => true,
+        TestType::HopkinsonTension => is_narrow(),
+        _ => false,
+    }
 }
 
 /// Whether force over area is a result of the test.

@@ -63,6 +63,8 @@ pub(super) struct Planned {
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
     pub(super) coarse: Vec<String>,
+    /// Whether the spheres of all bodies that can break are grains.
+    pub(super) is_granular: bool,
     pub(super) inputs: Inputs,
     /// Change of the time step in a resumed run.
     pub(super) changed_step: Option<String>,
@@ -115,7 +117,6 @@ impl<'a> Run<'a> {
                 continued: is_continued.then_some(&progress),
             })?,
         };
-        let began = Instant::now();
         let mut run = Self {
             scene,
             settings,
@@ -129,12 +130,13 @@ impl<'a> Run<'a> {
             outputs,
             fingerprint,
             is_checkpoint_due: false,
-            saved: began,
+            saved: Instant::now(),
             planned: Planned {
                 stages: plan.stages,
                 masses: plan.masses,
                 notes: plan.notes,
                 coarse: plan.coarse,
+                is_granular: plan.is_granular,
                 warnings: plan.warnings,
                 inputs: plan.inputs,
                 changed_step: changed_step.map(|new| new.detail),
@@ -142,7 +144,7 @@ impl<'a> Run<'a> {
             first_step: state.steps,
             first_time_s: state.time_s,
             state,
-            began,
+            began: Instant::now(),
             processor_before_s: processor_time_s(),
         };
         if !run.limits.new_steps.is_empty() {

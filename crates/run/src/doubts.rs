@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use dem_io::units::{show_length, significant};
 use dem_scene::{Scene, StartAs};
 
-use self::still_flying::{Flying, still_flying};
+use self::still_flying::{Flying, QUIET, still_flying};
 use super::monitors::{Extreme, Monitors};
 use super::taken_in::needed_j_kg;
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
@@ -19,7 +19,7 @@ use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments::Fragment;
 use dem_engine::state::rules::Outlet;
 
-/// Fraction of the run at its end in which a breaking bond shows that breakage is not over.
+/// Fraction of the run at its end in which breaking bonds show that breakage is not over.
 const LATE: f64 = 0.05;
 /// Share of all broken bonds that broke in that part of a run that inlets feed above which it ends
 /// in the middle of an impact, and number of broken bonds below which nothing is said of it.
@@ -201,7 +201,8 @@ impl Monitors {
         if is_fed(state) {
             return self.ends_in_a_burst(late_from_s);
         }
-        (last_s >= late_from_s).then(|| {
+        let goes_on = last_s >= late_from_s && self.breaks.go_on(LATE, state.time_s);
+        goes_on.then(|| {
             format!(
                 "bonds still broke at the end, the last at {} s of {} s: the breakage may not be over; set run.end_time later than {} s",
                 significant(last_s, 4),
@@ -223,7 +224,14 @@ impl Monitors {
         if is_fed(state) || scene.test.is_some() {
             return None;
         }
-        still_flying(state, fragments, self.largest_kinetic_j, last_break_s)
+        let goes_on = self.breaks.go_on(QUIET, state.time_s);
+        still_flying(
+            state,
+            fragments,
+            self.largest_kinetic_j,
+            last_break_s,
+            goes_on,
+        )
     }
 }
 

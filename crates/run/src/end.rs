@@ -92,7 +92,8 @@ impl Run<'_> {
         let outputs = self.outputs.iter();
         (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));
         let coarse = std::mem::take(&mut self.planned.coarse);
-        summary.judge(warnings, coarse, relaxation_remedy(&self.state));
+        let remedy = relaxation_remedy(&self.state);
+        summary.judge(warnings, coarse, self.planned.is_granular, remedy);
         match folder {
             None => {}
             // Of what has been simulated; its film goes on with the run.

@@ -109,7 +109,7 @@ pub fn run(
     let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), (notes, inputs));
     summary.test = test;
     warnings.extend(strain_warning(summary.largest_bond_strain, ""));
-    summary.judge(warnings, coarse, None);
+    summary.judge(warnings, coarse, false, None);
     if let (Some(folder), Some(order)) = (settings.folder, order) {
         at_rest.write(folder, &order, &values, &summary)?;
     }

@@ -2,7 +2,7 @@
 
 use dem_io::units::{show_quantity, significant};
 
-use super::{EQUILIBRIUM, LARGEST_T10, PRESSURE_OFF, STIFFNESS, T10, TestResult, UNBOOKED};
+use super::{Crack, EQUILIBRIUM, LARGEST_T10, PRESSURE_OFF, STIFFNESS, T10, TestResult, UNBOOKED};
 use crate::figure::{Figure, Source};
 use crate::specimen::TestType;
 
@@ -58,19 +58,32 @@ impl TestResult {
         doubts
     }
 
+    /// Whether most of the crack, or its middle, is elsewhere than the test requires. None: this
+    /// type of test requires no place.
+    pub(super) fn is_misplaced(&self, crack: &Crack) -> Option<bool> {
+        match self.kind {
+            TestType::DogBone | TestType::HopkinsonTension => {
+                Some(1.0 - crack.fraction_within > MOSTLY)
+            }
+            _ => (!self.is_dynamic()).then_some(!crack.is_within),
+        }
+    }
+
     /// A crack elsewhere than where the test requires it.
     fn misplaced_crack(&self) -> Option<String> {
         let crack = self.crack.as_ref()?;
-        if self.kind != TestType::DogBone {
-            let said = "the crack is outside the region that the test requires";
-            return (!crack.is_within).then(|| said.to_owned());
+        if self.is_misplaced(crack) != Some(true) {
+            return None;
         }
-        let outside = 1.0 - crack.fraction_within;
-        (outside > MOSTLY).then(|| {
-            format!(
-                "the body fails outside the neck, as {:.0} % of the broken bonds do: the test does not give the strength of the material; hold more of its ends (the groups in test.crosshead and [supports]), or make the neck narrower",
-                100.0 * outside
-            )
+        let outside = 100.0 * (1.0 - crack.fraction_within);
+        Some(match self.kind {
+            TestType::DogBone => format!(
+                "the body fails outside the neck, as {outside:.0} % of the broken bonds do: the test does not give the strength of the material; hold more of its ends (the groups in test.crosshead and [supports]), or make the neck narrower"
+            ),
+            TestType::HopkinsonTension => format!(
+                "the body breaks at a grip, as {outside:.0} % of the broken bonds do not lie in its middle half, or in its neck: the test does not give the strength of the material; take a body with a neck, and write length and area of the neck (test.length, test.area)"
+            ),
+            _ => "the crack is outside the region that the test requires".to_owned(),
         })
     }
 
@@ -123,15 +136,7 @@ impl TestResult {
                 significant(most, 3)
             ));
         }
-        if self.kind == TestType::HopkinsonTension
-            && let Some(crack) = &self.crack
-            && 1.0 - crack.fraction_within > MOSTLY
-        {
-            doubts.push(format!(
-                "the body breaks at a grip, as {:.0} % of the broken bonds do not lie in its middle half: the test does not give the strength of the material; take a body with a neck",
-                100.0 * (1.0 - crack.fraction_within)
-            ));
-        }
+        doubts.extend(self.misplaced_crack());
         let needs_strength = self.target_strength_pa.is_some() && self.kind != TestType::DropWeight;
         if needs_strength && !self.broken {
             doubts.push(

@@ -15,6 +15,7 @@ pub(crate) fn add_test(page: &mut Page, summary: &Summary) {
     let Some(test) = &summary.test else {
         return;
     };
+    page.paragraph(&format!("Answer: {}.", test.answer()));
     add_figures(page, "Results of the test", &test.figures);
     let sentences = test.sentences().into_iter();
     let sentences = sentences.map(|(name, text)| format!("{name}: {text}"));

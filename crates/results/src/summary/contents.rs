@@ -326,19 +326,21 @@ impl Summary {
     }
 
     /// Sets the verdict: reasons from the run to doubt it or to call it coarse, and those from the
-    /// summary itself. `energy_remedy`: what to do against an energy error, if the run knows better
-    /// than to take a smaller step.
+    /// summary itself. `is_granular`: fragments are grains, whatever their size. `energy_remedy`:
+    /// what to do against an energy error, if the run knows better than to take a smaller step.
     pub fn judge(
         &mut self,
         warnings: Vec<String>,
         coarse: Vec<String>,
+        is_granular: bool,
         energy_remedy: Option<&str>,
     ) {
         let warnings = (self.problem.iter().cloned())
             .chain(warnings)
             .chain(self.doubts(energy_remedy.unwrap_or(SMALLER_STEP)))
             .collect();
-        let coarse = coarse.into_iter().chain(self.small_fragments()).collect();
+        let small = self.small_fragments().filter(|_| !is_granular);
+        let coarse = coarse.into_iter().chain(small).collect();
         self.verdict = Verdict {
             unresolved: self.unresolved(),
             ..Verdict::new(warnings, coarse)
@@ -415,16 +417,18 @@ impl Summary {
     }
 }
 
-/// A test with its sentences, each after its name.
+/// A test with its answer, and its sentences, each after its name.
 fn with_sentences<S: Serializer>(test: &Option<TestResult>, to: S) -> Result<S::Ok, S::Error> {
     #[derive(Serialize)]
     struct Said<'a> {
         #[serde(flatten)]
         test: &'a TestResult,
+        answer: String,
         sentences: Vec<(String, String)>,
     }
     let said = test.as_ref().map(|test| Said {
         test,
+        answer: test.answer(),
         sentences: test.sentences(),
     });
     said.serialize(to)

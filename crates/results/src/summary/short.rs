@@ -9,7 +9,7 @@ use super::contents::{COARSE, Summary, Trust};
 use super::text::measure_lines;
 
 /// Number of measures, and of reasons for the verdict, that are shown; the others are counted.
-const SHOWN: usize = 4;
+pub(super) const SHOWN: usize = 4;
 
 impl Summary {
     /// The answers of the run in about ten lines; [`Summary`]'s `Display` shows everything.
@@ -39,9 +39,7 @@ impl Summary {
             let s = if more == 1 { "" } else { "s" };
             writeln!(out, "             and {more} more measure{s}")?;
         }
-        if let Some(test) = &self.test {
-            out.write_str(&test.text(&self.verdict.unresolved))?;
-        }
+        self.write_test(out)?;
         if self.equilibrium.is_none() {
             self.write_broken(out)?;
             self.write_flow(out)?;

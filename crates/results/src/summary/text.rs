@@ -10,6 +10,7 @@ use super::contents::Summary;
 use super::equilibrium::EquilibriumSummary;
 use super::measured::Measured;
 use super::parts::PopulationSummary;
+use super::short::SHOWN;
 use super::sizes::{RESOLVED_DIAMETERS, SizeSummary};
 
 /// Most bodies of which each has a line with its sizes.
@@ -22,9 +23,7 @@ impl fmt::Display for Summary {
         }
         self.write_head(f)?;
         measure_lines(&self.measures, f)?;
-        if let Some(test) = &self.test {
-            f.write_str(&test.text(&self.verdict.unresolved))?;
-        }
+        self.write_test(f)?;
         self.write_steps(f)?;
         self.write_broken(f)?;
         self.write_population(f)?;
@@ -73,6 +72,16 @@ impl Summary {
             self.threads,
             if self.threads == 1 { "" } else { "s" },
         )
+    }
+
+    /// The answer of a laboratory test with the verdict, and its figures.
+    pub(super) fn write_test(&self, f: &mut impl Write) -> fmt::Result {
+        let Some(test) = &self.test else {
+            return Ok(());
+        };
+        let word = self.verdict.word.word();
+        writeln!(f, "answer       {}; {word}", test.answer())?;
+        f.write_str(&test.text(&self.verdict.unresolved))
     }
 
     /// Whether no body could break: none had bonds, and daughters replaced none.
@@ -133,6 +142,12 @@ impl Summary {
             0 => String::new(),
             _ => format!(", {} of them inside", fragments.inside),
         };
+        // A measure has said it above.
+        let told = fragments.mass_fraction_of_largest;
+        let mut measures = self.measures.iter().take(SHOWN);
+        if measures.any(|measure| measure.unit.is_empty() && measure.value == told) {
+            return writeln!(f, "fragments    {}{inside}", fragments.count);
+        }
         writeln!(
             f,
             "fragments    {}{inside}, the largest {} of the mass",
@@ -283,9 +298,7 @@ impl Summary {
     ) -> fmt::Result {
         self.write_equilibrium_head(f)?;
         measure_lines(&self.measures, f)?;
-        if let Some(test) = &self.test {
-            f.write_str(&test.text(&self.verdict.unresolved))?;
-        }
+        self.write_test(f)?;
         let steps = |count: usize, what: &str| {
             format!("{count} {what}{}", if count == 1 { "" } else { "s" })
         };

@@ -267,7 +267,8 @@ pub(super) struct Found {
 }
 
 /// Looks at a body that is pressed or pulled along its length, whose formula takes this length, m,
-/// and area, m2. `volume_m3`: of its shape, if known; `free_m`: its length between grips.
+/// and area, m2. `volume_m3`: of its shape, if known; `free_m`: its length between grips;
+/// `is_necked`: length and area are those of a neck.
 pub(super) fn look_at_bar(
     scene: &Scene,
     test: &Test,
@@ -275,6 +276,7 @@ pub(super) fn look_at_bar(
     particles: &[u32],
     (length_m, area_m2): (f64, f64),
     (volume_m3, free_m): (Option<f64>, Option<f64>),
+    is_necked: bool,
 ) -> Found {
     let mut found = Found::default();
     if particles.is_empty() {
@@ -292,7 +294,7 @@ pub(super) fn look_at_bar(
         && of_shape_m2.is_some_and(|area| (area / mean_m2).max(mean_m2 / area) < PRISMATIC);
     let section_m2 = match of_shape_m2 {
         Some(area) if is_prismatic => area,
-        _ if test.kind == TestType::DogBone => least_m2,
+        _ if is_necked => least_m2,
         _ => mean_m2,
     };
     found.section_m2 = Some(section_m2);
@@ -322,8 +324,8 @@ pub(super) fn look_at_bar(
         ));
     }
     let shortest_m = match test.kind {
+        _ if is_necked => None,
         TestType::Tension | TestType::HopkinsonTension => free_m,
-        TestType::DogBone => None,
         _ => Some(body_m),
     };
     if let Some(shortest_m) = shortest_m.filter(|least| length_m < (1.0 - MUCH) * least) {

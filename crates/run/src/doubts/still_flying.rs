@@ -13,14 +13,15 @@ use dem_engine::state::clusters::fragments::Fragment;
 /// Fraction of the largest kinetic energy in the relative motion of fragments that shows that they
 /// still move apart.
 const FLYING: f64 = 0.05;
-/// Fraction of the run in which no bond has broken at its end that shows that breakage is over.
-const QUIET: f64 = 0.2;
+/// Fraction of the run in which hardly a bond has broken at its end that shows that breakage is
+/// over.
+pub(super) const QUIET: f64 = 0.2;
 
 /// Fragments that still move apart.
 pub(crate) struct Flying {
     /// The note or warning.
     pub(crate) text: String,
-    /// Whether breakage may not be over: something that can break touches something, and a bond has
+    /// Whether breakage may not be over: something that can break touches something, and bonds have
     /// broken not long ago. Otherwise what has been simulated is complete, and a later impact is
     /// another question.
     pub(crate) may_break: bool,
@@ -28,12 +29,13 @@ pub(crate) struct Flying {
 
 /// The fragments that still move apart, if some cluster can break and may meet something.
 /// `largest_kinetic_j`: the largest kinetic energy of the run; `last_break_s`: when its last bond
-/// broke.
+/// broke; `goes_on`: whether more than a few broke in its last part, [`QUIET`].
 pub(crate) fn still_flying(
     state: &State,
     fragments: &[Fragment],
     largest_kinetic_j: f64,
     last_break_s: f64,
+    goes_on: bool,
 ) -> Option<Flying> {
     let clusters = state.clusters.as_ref()?;
     let pieces = pieces_by_body(clusters, fragments);
@@ -52,12 +54,17 @@ pub(crate) fn still_flying(
     let end = significant(state.time_s, 4);
     let touching = touching(state);
     let touches = |id: &u32| clusters.members(*id).iter().any(|i| touching.contains(i));
-    let quiet_s = state.time_s - last_break_s;
     if breakable.iter().any(touches) {
-        if quiet_s >= QUIET * state.time_s {
-            let quiet = significant(quiet_s, 3);
+        let (quiet_s, enough_s) = (state.time_s - last_break_s, QUIET * state.time_s);
+        let is_silent = quiet_s >= enough_s;
+        if is_silent || !goes_on {
+            let (how, for_s) = match is_silent {
+                true => ("no bond has", quiet_s),
+                false => ("few bonds have", enough_s),
+            };
+            let quiet = significant(for_s, 3);
             return Some(Flying {
-                text: format!("{seen}; no bond has broken for {quiet} s"),
+                text: format!("{seen}; {how} broken for {quiet} s"),
                 may_break: false,
             });
         }

@@ -244,8 +244,10 @@ impl Template {
             Self::Drop => {
                 // Waves cross the body in a time that goes with its size.
                 let impact = 1e-3 * (size / 30e-3) * (body.density_kg_m3 / 1500.0).sqrt();
+                // Chips of a higher fall roll below the body for longer.
+                let end = 4.0 * impact * situation_si.clamp(1.0, 3.0);
                 let height = ("height", Value::length(situation_si));
-                vec![height, ("impact", Value::new(impact, "s"))]
+                vec![height, ("end", Value::new(end, "s"))]
             }
             Self::DropWeight => {
                 let impact = 1e-3 * (size / 40e-3) * (body.density_kg_m3 / 2650.0).sqrt();
@@ -267,14 +269,7 @@ impl Template {
                     ("rate", Value::new(0.2 * situation_si / size, "/s")),
                 ]
             }
-            Self::Crusher => {
-                let nip = HEIGHT_OVER_WIDTH * (1.06 * x - situation_si);
-                vec![
-                    ("gap", Value::length(situation_si)),
-                    ("nip", Value::length(nip)),
-                    ("top", Value::length(nip + 1.3 * z)),
-                ]
-            }
+            Self::Crusher => crusher_values(body, situation_si),
             Self::Mill => vec![
                 ("speed", Value::new(situation_si, "rad/s")),
                 ("radius", Value::length(drum_radius_m(body))),
@@ -358,6 +353,20 @@ fn deck(body: &Measured, opening_m: f64) -> Deck {
         bar,
         thickness: 0.25 * size,
     }
+}
+
+fn crusher_values(body: &Measured, gap_m: f64) -> Vec<(&'static str, Value)> {
+    let [x, _, z] = body.extent_m;
+    let nip = HEIGHT_OVER_WIDTH * (1.06 * x - gap_m);
+    // A lump falls by its own size in a time that goes with the root of its size.
+    let stroke = 0.2 * (body.size_m() / 60e-3).sqrt();
+    vec![
+        ("stroke", Value::new(stroke, "s")),
+        ("frequency", Value::new(1.0 / stroke, "Hz")),
+        ("gap", Value::length(gap_m)),
+        ("nip", Value::length(nip)),
+        ("top", Value::length(nip + 1.3 * z)),
+    ]
 }
 
 fn screen_values(body: &Measured, opening_m: f64) -> Vec<(&'static str, Value)> {
