@@ -1,20 +1,20 @@
 //! The section of a tested body and the pressed part of its ends, measured on its particles.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 fn scene(text: &str) -> Scene {
     scene_from_text(text, "test.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
 use dem_rig::plan_with_test;
-use dem_scene::{Scene, read_bodies, scene_from_text};
+use dem_scene::{Scene, read_bodies, read_scene, scene_from_text};
 
 /// Half the distance of neighbours in the block, m.
 const R: f64 = 3e-3;
 
 /// A block of 6 x 6 x 10 spheres of 6 mm between plates, turned by an angle about y. `upper`: shape
-/// of
-/// the upper plate; `more`: lines of [test].
+/// of the upper plate; `more`: lines of [test].
 fn block(upper: &str, degrees: f64, kind: &str, more: &str) -> String {
     let mut particles = Vec::new();
     for k in 0..10 {
@@ -211,4 +211,31 @@ fn dimensions_of_the_measured_specimen_are_taken() {
         [0.06, 1.296e-3],
         [false, false, true],
     );
+}
+
+/// Half the length in which the crack belongs, m, and the section, m2, of the dog bone between bars.
+fn of_bone(set: &[&str]) -> (f64, f64) {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/scenes/hopkinson-tension.toml"
+    );
+    let set: Vec<String> = set.iter().map(|set| (*set).to_owned()).collect();
+    let scene = read_scene(Path::new(path), &set).unwrap_or_else(|error| panic!("{error}"));
+    let bodies = read_bodies(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let (_, setup) =
+        plan_with_test(&scene, bodies, 1, true).unwrap_or_else(|error| panic!("{error}"));
+    let setup = setup.unwrap();
+    (setup.crack_within_m, setup.section_m2.unwrap())
+}
+
+/// A neck of 24 mm x 176.7 mm2 in a body of 80 mm: the crack belongs anywhere in it. Without length
+/// and area of the neck it belongs in the middle half of what is taken for a bar.
+#[test]
+fn length_and_area_of_a_neck_say_where_the_crack_belongs() {
+    let (within_m, section_m2) = of_bone(&[]);
+    assert!((within_m - 12e-3).abs() < 1e-9, "{within_m}");
+    assert!((section_m2 / 176.7e-6 - 1.0).abs() < 0.1, "{section_m2}");
+    let (bar_m, mean_m2) = of_bone(&["test.area=\"400 mm2\""]);
+    assert!((bar_m - 6e-3).abs() < 1e-9, "{bar_m}");
+    assert!(mean_m2 > 1.5 * section_m2, "{mean_m2}");
 }

@@ -218,7 +218,8 @@ fn a_body_of_few_spheres_is_coarse_unless_it_is_rigid_or_calibrated() {
     let coarse = verdict(&[]);
     assert_eq!(coarse["word"], "coarse", "{coarse}");
     assert_eq!(coarse["sound"], false);
-    let why = coarse["coarse"][0].as_str().unwrap();
+    let why_few = &coarse["coarse"][0];
+    let why = why_few.as_str().unwrap();
     assert!(
         why.contains("only about 4.9 particles across the thinnest part (9.8 mm)"),
         "{why}"
@@ -244,4 +245,19 @@ fn a_body_of_few_spheres_is_coarse_unless_it_is_rigid_or_calibrated() {
     assert_eq!(corrected["word"], "sound", "{corrected}");
     let rigid = ["--set", "bodies.row.start_as=clump"];
     assert_eq!(verdict(&rigid)["word"], "sound", "{}", verdict(&rigid));
+    // Of bonds that do not hold the weight of a sphere, 2/3 rho g d, it is a granulate.
+    let weight_pa = 2.0 / 3.0 * 2050.0 * 9.81 * diameter_m;
+    let held = |factor: f64| {
+        let strength = format!(
+            "bonds.any.failure={{tensile_strength=\"{} Pa\"}}",
+            factor * weight_pa
+        );
+        let gravity = "run.gravity=[0, 0, -9.81]";
+        let checked = [
+            "check", scene, "--json", "--set", &strength, "--set", gravity,
+        ];
+        json(&bench, &checked)["verdict"]["coarse"].clone()
+    };
+    assert_eq!(held(0.5), serde_json::json!([]));
+    assert_eq!(held(2.0)[0], *why_few);
 }
