@@ -6,7 +6,7 @@ mod tests;
 use std::f64::consts::PI;
 
 use crate::bench::{Bench, Failed};
-use crate::cells::{columns, mean, median, over, scattered, thousands};
+use crate::cells::{columns, mean, median, over, scattered, thousands, three_digits};
 use crate::concrete::PAGE;
 use crate::fracture::material::Material;
 use crate::fracture::shapes::{Spheres, across, keep, row};
@@ -195,7 +195,8 @@ fn bar_cells((rows, count): &(Vec<[f64; 3]>, usize)) -> Vec<String> {
     cells
 }
 
-/// Centres of the holes over the radius: all walls between holes and outside are as thick.
+/// Distance of the centres of the holes from the middle, m: all walls, between holes and outside of
+/// them, are as thick.
 fn hole_circle_m() -> f64 {
     (0.5 * HOLED_M[0] + 0.5 * HOLE_M) / (1.0 + 2_f64.sqrt())
 }
@@ -294,11 +295,6 @@ fn disc_cells((rows, count): &(Vec<[f64; 4]>, usize)) -> Vec<String> {
     let mut cells = vec![rows.len().to_string(), thousands(*count as f64)];
     cells.extend(over(rows, [2, 2, 0, 0]));
     cells
-}
-
-/// A number to three digits.
-fn three_digits(number: f64) -> f64 {
-    format!("{number:.2e}").parse().unwrap_or(number)
 }
 
 /// Bonds of bars and of discs: loads of brittle bodies are in proportion to the strength of their

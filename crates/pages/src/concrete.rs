@@ -8,7 +8,9 @@ use dem_plots::{Line, Plot};
 
 use self::measured::{Load, MEASURED, Measured, OPENINGS_M, measured};
 use crate::bench::{Bench, Failed, Run};
-use crate::cells::{columns, least_to_most, mean, median, over, scattered, thousands};
+use crate::cells::{
+    columns, least_to_most, mean, median, over, scattered, thousands, three_digits,
+};
 use crate::fracture::material::Material;
 use crate::fracture::shapes::{Spheres, across, cut, row};
 use crate::fracture::specimen::{Curve, Specimen};
@@ -273,11 +275,6 @@ fn bent(
         run(&specimen, &material, case.beam)
     };
     (1..=case.packings).map(of_seed).collect()
-}
-
-/// A number to three digits.
-fn three_digits(number: f64) -> f64 {
-    format!("{number:.2e}").parse().unwrap_or(number)
 }
 
 /// Finds the bonds: the modulus follows the load at a small opening, the strength the largest
