@@ -4,6 +4,7 @@
 //! `board penetration` runs a case of a round robin.
 
 mod page;
+mod quasi_static;
 mod robin;
 mod rows;
 mod times;

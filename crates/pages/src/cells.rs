@@ -93,6 +93,11 @@ pub(crate) fn rounded(number: f64, digits: usize) -> String {
     }
 }
 
+/// A number to three digits.
+pub(crate) fn three_digits(number: f64) -> f64 {
+    format!("{number:.2e}").parse().unwrap_or(number)
+}
+
 /// A change in percent, with its sign.
 pub(crate) fn change(fraction: f64, digits: usize) -> String {
     format!("{:+.digits$} %", 100.0 * fraction)

@@ -2,11 +2,11 @@
 //! size.
 
 mod formulas;
-mod material;
+pub(crate) mod material;
 mod pressed;
 mod rock;
-mod shapes;
-mod specimen;
+pub(crate) mod shapes;
+pub(crate) mod specimen;
 #[cfg(test)]
 mod tests;
 

@@ -10,6 +10,7 @@
 //! in `target/pages`; with `--resume` at the end complete ones are kept. doc/inside/development.md
 //! lists the commands.
 
+mod alumina;
 mod bench;
 mod board;
 mod bodies;
@@ -17,6 +18,7 @@ mod bulk;
 mod calibration;
 mod calibration_cases;
 mod cells;
+mod concrete;
 mod dynamic;
 mod fracture;
 mod laboratory;
@@ -45,7 +47,8 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 46] = [
+const COMMANDS: [(&str, Work); 48] = [
+    ("alumina", alumina::alumina),
     ("board page", board::write),
     ("board penetration", board::penetration),
     ("board times", board::measure),
@@ -55,6 +58,7 @@ const COMMANDS: [(&str, Work); 46] = [
     ("calibration cases", calibration_cases::cases),
     ("calibration scatter", calibration::scatter),
     ("calibration sizes", calibration::sizes),
+    ("concrete", concrete::concrete),
     ("dynamic heights", dynamic::heights),
     ("fracture beams", fracture::beams),
     ("fracture growth", fracture::growth),

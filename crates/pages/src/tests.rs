@@ -14,18 +14,20 @@ use crate::bench::{Failed, Run, finished, root};
 use crate::cells::{scattered, thousands};
 use crate::table::{Table, parts, place, rows};
 use crate::{
-    COMMANDS, board, bodies, bulk, calibration, calibration_cases, dynamic, fracture, laboratory,
-    packing, parameters, pressing, process, replacement, resolution, rocks, round_robin,
-    self_contact, thesis,
+    COMMANDS, alumina, board, bodies, bulk, calibration, calibration_cases, concrete, dynamic,
+    fracture, laboratory, packing, parameters, pressing, process, replacement, resolution, rocks,
+    round_robin, self_contact, thesis,
 };
 
 fn tables() -> Vec<Table> {
     let mut all = Vec::new();
+    all.extend(alumina::tables());
     all.extend(board::tables().unwrap());
     all.push(bodies::table());
     all.extend(bulk::tables());
     all.extend(calibration::tables());
     all.extend(calibration_cases::tables());
+    all.extend(concrete::tables());
     all.extend(dynamic::tables());
     all.extend(fracture::tables());
     all.extend(laboratory::tables());

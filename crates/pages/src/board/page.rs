@@ -1,7 +1,7 @@
 //! The table of the board.
 
-use super::robin;
 use super::rows::{Row, bonded, measured, of_programs, of_rocks, of_sections, of_sizes, of_tables};
+use super::{quasi_static, robin};
 use crate::bench::{Bench, Failed};
 use crate::table::{Table, write as write_tables};
 
@@ -23,7 +23,13 @@ fn row_cells(row: Row) -> Vec<String> {
 /// The tables of the page, whole: one for each kind of source.
 pub(crate) fn tables() -> Result<[Table; 6], Failed> {
     let mut tables = Vec::new();
-    let of_others = [robin::rows()?, measured()?, of_rocks()?].concat();
+    let of_others = [
+        robin::rows()?,
+        measured()?,
+        of_rocks()?,
+        quasi_static::rows()?,
+    ]
+    .concat();
     for rows in [
         of_others,
         of_programs()?,

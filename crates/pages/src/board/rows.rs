@@ -100,18 +100,18 @@ pub(super) fn of_sections() -> Result<Vec<Row>, Failed> {
 }
 
 /// A row of a table on a page: our number and that of others, by their columns.
-struct Pick {
-    case: &'static str,
-    source: &'static str,
-    page: &'static str,
-    section: &'static str,
+pub(super) struct Pick {
+    pub(super) case: &'static str,
+    pub(super) source: &'static str,
+    pub(super) page: &'static str,
+    pub(super) section: &'static str,
     /// The beginnings of the first cells of the row, between `|`.
-    row: &'static str,
-    ours: &'static str,
+    pub(super) row: &'static str,
+    pub(super) ours: &'static str,
     /// Row, by the same rule, and column of the number of others.
-    theirs: [&'static str; 2],
+    pub(super) theirs: [&'static str; 2],
     /// Column of the time, s, if the table has one.
-    time: &'static str,
+    pub(super) time: &'static str,
 }
 
 /// Where the times of the thesis are from.
@@ -304,7 +304,23 @@ fn find(tables: &[Vec<Vec<String>>], row: &str, column: &str) -> Option<(Vec<Str
     None
 }
 
-fn picked(pick: &Pick) -> Result<Row, Failed> {
+/// The error of a number beside that of a cell, or beside the nearer end of a band: `1 to 2`.
+fn compared(own: f64, theirs: &str) -> Option<String> {
+    let ends = theirs.split_once(" to ").filter(|_| !theirs.contains('('));
+    let Some((low, high)) = ends else {
+        return Some(change(own / leading(theirs)? - 1.0, 2));
+    };
+    let (low, high) = (leading(low)?, leading(high)?);
+    Some(if own < low {
+        format!("{} of the lower end", change(own / low - 1.0, 1))
+    } else if own > high {
+        format!("{} of the upper end", change(own / high - 1.0, 1))
+    } else {
+        "inside".to_owned()
+    })
+}
+
+pub(super) fn picked(pick: &Pick) -> Result<Row, Failed> {
     let tables = tables_of(pick.page, pick.section)?;
     let cell = |row: &str, column: &str| -> Result<String, Failed> {
         let found = find(&tables, row, column).map(|(cells, at)| cells[at].clone());
@@ -312,7 +328,7 @@ fn picked(pick: &Pick) -> Result<Row, Failed> {
     };
     let ours = cell(pick.row, pick.ours)?;
     let theirs = cell(pick.theirs[0], pick.theirs[1])?;
-    let off = leading(&ours).zip(leading(&theirs));
+    let off = leading(&ours).and_then(|own| compared(own, &theirs));
     let time = if pick.time.is_empty() {
         String::new()
     } else {
@@ -324,7 +340,7 @@ fn picked(pick: &Pick) -> Result<Row, Failed> {
         case: format!("[{}](../../{})", pick.case, pick.page),
         source: pick.source.to_owned(),
         hardware: hardware.to_owned(),
-        error: off.map_or(String::new(), |(a, b)| change(a / b - 1.0, 2)),
+        error: off.unwrap_or_default(),
         ours,
         theirs,
         time,

@@ -1,7 +1,7 @@
 //! Strengths in compression and in tension of a rock by its bonds, and the bonds of a rock that is
 //! given by its modulus, toughness and strengths.
 
-use super::material::{FLAT_JOINT, Material};
+use super::material::{DENSITY_KG_M3, FLAT_JOINT, Material};
 use super::pressed::crushed_pa;
 use super::shapes::{HEIGHT_M, Spheres};
 use super::specimen::{beam, bent, pulled, split_pa};
@@ -88,16 +88,9 @@ pub(crate) fn ratios(bench: &Bench) -> Result<(), Failed> {
     write(&[table])
 }
 
-/// Bonds of this modulus, Pa, fracture energy, J/m2, and tensile strength, Pa.
-fn rock([young_pa, energy_j_m2, tensile_pa]: [f64; 3]) -> Material {
-    let failure = format!("tensile_strength={tensile_pa:.4e},fracture_energy={energy_j_m2:.4e}");
-    Material {
-        name: format!("{young_pa:.3e} {energy_j_m2:.3e} {tensile_pa:.3e}"),
-        bonds: format!("{{young_modulus={young_pa:.4e},poisson_ratio=0.25,failure={{{failure}}}}}"),
-        young_pa: ROCK[0],
-        strength_pa: tensile_pa,
-        fracture_energy_j_m2: energy_j_m2,
-    }
+/// The bonds of the rock.
+fn rock(bonds: [f64; 3]) -> Material {
+    Material::tensile(bonds, ROCK[0], DENSITY_KG_M3)
 }
 
 /// Means over packings of what `ROCK` has.

@@ -108,11 +108,14 @@ fn prism([x_m, y_m, z_m]: [f64; 3], corners: u32) -> String {
 /// Takes away the bonds that cross the plane through the origin across this axis at a point in the
 /// notch.
 pub(crate) fn cut(body: &mut Body, axis: usize, notch: impl Fn([f64; 3]) -> bool) {
-    let keep: Vec<bool> = body
-        .bonds
-        .iter()
-        .map(|bond| crossing(body, axis, *bond).is_none_or(|at_m| !notch(at_m)))
-        .collect();
+    keep(body, |body, bond| {
+        crossing(body, axis, bond).is_none_or(|at_m| !notch(at_m))
+    });
+}
+
+/// Keeps the bonds of a body that meet a condition.
+pub(crate) fn keep(body: &mut Body, meets: impl Fn(&Body, [u32; 2]) -> bool) {
+    let keep: Vec<bool> = body.bonds.iter().map(|bond| meets(body, *bond)).collect();
     let mut kept = keep.iter();
     body.bonds.retain(|_| kept.next() == Some(&true));
     for of_bonds in [&mut body.bond_radii, &mut body.bond_lengths] {
@@ -136,12 +139,17 @@ pub(crate) fn across(body: &Body, axis: usize) -> usize {
         .count()
 }
 
-/// In each of as many strips across the width as spheres fit, the sphere with the least distance.
-pub(crate) fn row(body: &Body, diameter_m: f64, distance: impl Fn([f64; 3]) -> f64) -> Vec<usize> {
-    let strips = (WIDTH_M / diameter_m).round().max(2.0);
+/// In each of as many strips across the width, m, as spheres fit, the sphere with the least distance.
+pub(crate) fn row(
+    body: &Body,
+    diameter_m: f64,
+    width_m: f64,
+    distance: impl Fn([f64; 3]) -> f64,
+) -> Vec<usize> {
+    let strips = (width_m / diameter_m).round().max(2.0);
     let mut nearest = vec![(f64::INFINITY, 0); strips as usize];
     for (number, place) in body.positions.iter().enumerate() {
-        let strip = (place[1] / WIDTH_M + 0.5) * strips;
+        let strip = (place[1] / width_m + 0.5) * strips;
         let strip = strip.clamp(0.0, strips - 1.0) as usize;
         let candidate = (distance(*place), number);
         if candidate.0 < nearest[strip].0 {

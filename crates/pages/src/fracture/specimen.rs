@@ -22,30 +22,32 @@ const NOTCH_M: f64 = 0.09;
 const GROOVE_WIDTH_M: f64 = 0.025;
 /// Corners of the outline of a disc, half the width of its pads over its radius, and the length of
 /// its notch over its diameter.
-const CORNERS: u32 = 48;
+pub(crate) const CORNERS: u32 = 48;
 const PAD: f64 = 0.15;
 const DISC_NOTCH: f64 = 0.5;
-/// Density of the scenes, kg/m3.
-const DENSITY_KG_M3: f64 = 2650.0;
 
 /// A specimen between supports.
 pub(crate) struct Specimen {
     pub(crate) name: String,
     pub(crate) body: Body,
     /// The groups `held`, `driven`, `guide`, `gauge-a` and `gauge-b`.
-    groups: [Vec<usize>; 5],
-    /// Axis along which it is loaded: 0 or 2.
-    axis: usize,
+    pub(crate) groups: [Vec<usize>; 5],
+    /// Axis along which it is loaded, 0 or 2, and that along which its gauges move.
+    pub(crate) axis: usize,
+    pub(crate) gauge_axis: usize,
     /// Travel at which it is expected to fail, and time in which it gets there.
-    travel_m: f64,
-    time_s: f64,
+    pub(crate) travel_m: f64,
+    pub(crate) time_s: f64,
+    /// Part of that time in which it gets up to its speed.
+    pub(crate) start: f64,
     /// Travel and broken bonds at which the run ends, the travel over that at failure.
-    strokes: f64,
-    most_broken: usize,
+    pub(crate) strokes: f64,
+    pub(crate) most_broken: usize,
     /// Distance of the outer pins of a beam, or of the gauges of a bar, m.
     pub(crate) span_m: f64,
 }
 
+const AXES: [&str; 3] = ["x", "y", "z"];
 const GROUPS: [&str; 5] = ["held", "driven", "guide", "gauge-a", "gauge-b"];
 /// Periods of the lowest vibration until failure.
 const PERIODS: f64 = 10.0;
@@ -62,7 +64,7 @@ pub(crate) fn beam(
     let mut body = spheres.packed(bench, &name, size_m, 4)?;
     cut(&mut body, 0, |[_, _, z_m]| z_m < (DEPTH - 0.5) * height_m);
     let pins = |x_m: f64, up: f64, body: &Body| {
-        row(body, spheres.diameter_m, |[x, _, z]| {
+        row(body, spheres.diameter_m, WIDTH_M, |[x, _, z]| {
             (x - x_m).abs() - up * z
         })
     };
@@ -77,15 +79,17 @@ pub(crate) fn beam(
     let toughness = material.toughness(spheres.diameter_m);
     let stress_pa = toughness / (beam_shape(DEPTH, SPAN) * height_m.sqrt());
     let travel_m = stress_pa / material.young_pa * height_m * 3.3;
-    let speed_m_s = (material.young_pa / DENSITY_KG_M3).sqrt();
+    let speed_m_s = material.speed_m_s();
     Ok(Specimen {
         name: format!("beam-{:.0}-{}", 1e3 * height_m, spheres.name()),
         most_broken: (0.8 * across(&body, 0) as f64) as usize,
         body,
         groups: [[left, right].concat(), load.clone(), load, gauge_a, gauge_b],
         axis: 2,
+        gauge_axis: 0,
         travel_m: -travel_m,
         time_s: PERIODS * LENGTH * LENGTH * height_m / speed_m_s,
+        start: 0.1,
         strokes: 4.0,
         span_m,
     })
@@ -104,7 +108,7 @@ pub(crate) fn double_cantilever(
         x_m < load_m + NOTCH_M || y_m.abs() > 0.5 * GROOVE_WIDTH_M
     });
     let arm = |z_m: f64| {
-        row(&body, spheres.diameter_m, |[x, _, z]| {
+        row(&body, spheres.diameter_m, WIDTH_M, |[x, _, z]| {
             (x - load_m).abs() + (z - z_m).abs()
         })
     };
@@ -112,15 +116,17 @@ pub(crate) fn double_cantilever(
     let toughness = material.toughness(spheres.diameter_m);
     let cantilevers = cantilevers();
     let load_n = toughness / cantilevers.intensity(1.0, NOTCH_M);
-    let speed_m_s = (material.young_pa / DENSITY_KG_M3).sqrt();
+    let speed_m_s = material.speed_m_s();
     Ok(Specimen {
         name: format!("cantilever-{}", spheres.name()),
         most_broken: (0.8 * across(&body, 2) as f64) as usize,
         body,
         groups: [lower.clone(), upper.clone(), upper.clone(), lower, upper],
         axis: 2,
+        gauge_axis: 0,
         travel_m: load_n / cantilevers.stiffness(material.young_pa, NOTCH_M),
         time_s: PERIODS * 6.0 * NOTCH_M.powi(2) / (cantilevers.arm_m * speed_m_s),
+        start: 0.1,
         strokes: 5.0,
         span_m: 0.0,
     })
@@ -134,11 +140,8 @@ pub(crate) fn cantilevers() -> Cantilevers {
     }
 }
 
-/// The block of the beams without a notch, pulled along its length by a layer at each end.
-fn bar(bench: &Bench, material: &Material, spheres: Spheres) -> Result<Specimen, Failed> {
-    let length_m = LENGTH * HEIGHT_M;
-    let size_m = [length_m, WIDTH_M, HEIGHT_M];
-    let body = spheres.packed(Some(bench), "block-100", size_m, 4)?;
+/// A block of these sizes, m, pulled along its length by a layer at each end.
+fn bar(body: Body, material: &Material, spheres: Spheres, [length_m, ..]: [f64; 3]) -> Specimen {
     let grip_m = 0.5 * length_m - spheres.diameter_m;
     let left = those(&body, |[x_m, ..]| x_m < -grip_m);
     let right = those(&body, |[x_m, ..]| x_m > grip_m);
@@ -150,22 +153,23 @@ fn bar(bench: &Bench, material: &Material, spheres: Spheres) -> Result<Specimen,
     };
     let [gauge_a, gauge_b] = [-gauge_m, gauge_m].map(near);
     let span_m = mean_x_m(&body, &gauge_b) - mean_x_m(&body, &gauge_a);
-    let speed_m_s = (material.young_pa / DENSITY_KG_M3).sqrt();
-    Ok(Specimen {
+    let speed_m_s = material.speed_m_s();
+    Specimen {
         name: format!("bar-{}", spheres.name()),
         most_broken: body.bonds.len() / 100,
         groups: [left, right, Vec::new(), gauge_a, gauge_b],
         axis: 0,
+        gauge_axis: 0,
         travel_m: 1.5 * material.strength_pa / material.young_pa * length_m,
         time_s: 40.0 * length_m / speed_m_s,
+        start: 0.1,
         strokes: 2.0,
         span_m,
         body,
-    })
+    }
 }
 
-/// A disc with a notch of this length over its diameter along the load; 0: none. Spheres near its
-/// ends are pads that press it.
+/// A disc with a notch of this length over its diameter along the load; 0: none.
 pub(crate) fn disc(
     bench: &Bench,
     material: &Material,
@@ -173,10 +177,29 @@ pub(crate) fn disc(
     notch: f64,
 ) -> Result<Specimen, Failed> {
     let size_m = [HEIGHT_M, WIDTH_M, HEIGHT_M];
-    let radius_m = 0.5 * HEIGHT_M;
     let mut body = spheres.packed(Some(bench), "disc", size_m, CORNERS)?;
-    cut(&mut body, 0, |[_, _, z_m]| z_m.abs() < notch * radius_m);
-    let end = |up: f64| row(&body, spheres.diameter_m, |[x, _, z]| x.abs() - up * z);
+    cut(&mut body, 0, |[_, _, z_m]| {
+        z_m.abs() < notch * 0.5 * HEIGHT_M
+    });
+    Ok(Specimen {
+        name: format!("disc-{notch}-{}", spheres.name()),
+        ..squeezed(body, material, spheres, size_m)
+    })
+}
+
+/// A disc of these sizes, m, without a name, which spheres near two of its ends press: pads.
+pub(crate) fn squeezed(
+    body: Body,
+    material: &Material,
+    spheres: Spheres,
+    [_, width_m, height_m]: [f64; 3],
+) -> Specimen {
+    let radius_m = 0.5 * height_m;
+    let end = |up: f64| {
+        row(&body, spheres.diameter_m, width_m, |[x, _, z]| {
+            x.abs() - up * z
+        })
+    };
     let pad = |up: f64| {
         let mut pad = those(&body, |[x, _, z]| {
             x.abs() < PAD * radius_m
@@ -190,18 +213,19 @@ pub(crate) fn disc(
     };
     let [below, above] = [-1.0, 1.0].map(pad);
     let guide = end(1.0);
-    let speed_m_s = (material.young_pa / DENSITY_KG_M3).sqrt();
-    Ok(Specimen {
-        name: format!("disc-{notch}-{}", spheres.name()),
+    Specimen {
+        name: String::new(),
         most_broken: across(&body, 0) / 2,
         groups: [below.clone(), above.clone(), guide, below, above],
         body,
         axis: 2,
-        travel_m: -6.0 * material.strength_pa / material.young_pa * HEIGHT_M,
-        time_s: 40.0 * HEIGHT_M / speed_m_s,
+        gauge_axis: 0,
+        travel_m: -6.0 * material.strength_pa / material.young_pa * height_m,
+        time_s: 40.0 * height_m / material.speed_m_s(),
+        start: 0.1,
         strokes: 3.0,
         span_m: 0.0,
-    })
+    }
 }
 
 /// Tensile strength of a disc, Pa.
@@ -230,13 +254,14 @@ pub(crate) fn notched_disc(
 /// What a specimen measures: a row for each time, of load, travel, opening of the gauges, broken
 /// bonds, and the energy that damage of bonds has taken.
 pub(crate) struct Curve {
-    rows: Vec<[f64; 5]>,
+    pub(crate) rows: Vec<[f64; 5]>,
 }
 
 impl Specimen {
     /// The keys of `tests/fracture/specimen.toml` that it sets.
     pub(crate) fn sets(&self, material: &Material) -> Vec<String> {
-        let direction = ["x", "y", "z"][self.axis];
+        let direction = AXES[self.axis];
+        let gauged = AXES[self.gauge_axis];
         let end_s = self.strokes * self.time_s;
         let mut all = vec![
             format!("bonds.rock={}", material.bonds),
@@ -251,9 +276,15 @@ impl Specimen {
                 "supports.driven.velocity={{{direction}={}}}",
                 self.travel_m / self.time_s
             ),
-            format!("supports.driven.table=[[0,0],[{},1]]", 0.1 * self.time_s),
+            format!(
+                "supports.driven.table=[[0,0],[{},1]]",
+                self.start * self.time_s
+            ),
             format!("measures.load.quantity=\"reaction_{direction}\""),
             format!("measures.travel.quantity=\"displacement_{direction}\""),
+            format!("measures.gauge_a.quantity=\"displacement_{gauged}\""),
+            format!("measures.gauge_b.quantity=\"displacement_{gauged}\""),
+            format!("materials.rock.density={}", material.density_kg_m3),
             format!("measures.broken.end_run_above={}", self.most_broken),
         ];
         for (name, group) in GROUPS.iter().zip(&self.groups) {
@@ -269,13 +300,16 @@ impl Specimen {
     }
 
     pub(crate) fn run(&self, bench: &Bench, material: &Material) -> Result<Curve, Failed> {
+        self.curve(&self.results(bench, material)?)
+    }
+
+    pub(crate) fn results(&self, bench: &Bench, material: &Material) -> Result<Run, Failed> {
         let file = bench.folder.join(format!("{}.vtp", self.name));
         write_body(&self.body, &file)?;
         let mut options = sets(&self.sets(material));
         options.extend([ONE_THREAD.to_owned(), body("specimen", &file)]);
         let name = format!("{}-{}", self.name, material.file_name());
-        let run = bench.run(&name, "tests/fracture/specimen.toml", &options)?;
-        self.curve(&run)
+        bench.run(&name, "tests/fracture/specimen.toml", &options)
     }
 
     pub(crate) fn curve(&self, run: &Run) -> Result<Curve, Failed> {
@@ -302,13 +336,13 @@ impl Specimen {
 
 impl Curve {
     /// Load averaged over five rows, N.
-    fn load_n(&self, at: usize) -> f64 {
+    pub(crate) fn load_n(&self, at: usize) -> f64 {
         let around = &self.rows[at.saturating_sub(2)..(at + 3).min(self.rows.len())];
         around.iter().map(|row| row[0]).sum::<f64>() / around.len() as f64
     }
 
     /// The row of the largest load, and that load, N.
-    fn peak(&self) -> (usize, f64) {
+    pub(crate) fn peak(&self) -> (usize, f64) {
         let loads = (0..self.rows.len()).map(|at| (at, self.load_n(at)));
         let larger = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
         loads.fold((0, 0.0), larger)
@@ -349,15 +383,28 @@ impl Curve {
     }
 }
 
-/// Modulus and strength in tension, Pa.
+/// Modulus and strength in tension of the block of the beams without a notch, Pa.
 pub(crate) fn pulled(
     bench: &Bench,
     material: &Material,
     spheres: Spheres,
 ) -> Result<[f64; 2], Failed> {
-    let bar = bar(bench, material, spheres)?;
+    let size_m = [LENGTH * HEIGHT_M, WIDTH_M, HEIGHT_M];
+    let body = spheres.packed(Some(bench), "block-100", size_m, 4)?;
+    pulled_block(bench, material, spheres, body, size_m)
+}
+
+/// The same of a block of these sizes, m.
+pub(crate) fn pulled_block(
+    bench: &Bench,
+    material: &Material,
+    spheres: Spheres,
+    body: Body,
+    size_m: [f64; 3],
+) -> Result<[f64; 2], Failed> {
+    let bar = bar(body, material, spheres, size_m);
     let curve = bar.run(bench, material)?;
-    let area_m2 = WIDTH_M * HEIGHT_M;
+    let area_m2 = size_m[1] * size_m[2];
     let young_pa = curve.stiffness() * bar.span_m / area_m2;
     Ok([young_pa, curve.peak_n() / area_m2])
 }
