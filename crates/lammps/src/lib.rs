@@ -136,9 +136,8 @@ pub fn export(
     for (name, text) in &texts {
         write_file(&folder.join(name), |out| out.write_all(text.as_bytes()))?;
     }
-    write_file(&folder.join(MANIFEST), |out| {
-        write_json_text(out, &manifest)
-    })?;
+    let file = folder.join(MANIFEST);
+    write_file(&file, |out| write_json_text(out, &manifest))?;
     whole.publish()?;
     Ok(Written {
         particles: plan.state.particles.len(),

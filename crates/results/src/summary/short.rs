@@ -6,10 +6,7 @@ use dem_io::text::{counted, visible};
 use dem_io::units::significant;
 
 use super::contents::{COARSE, Summary, Trust};
-use super::text::measure_lines;
-
-/// Number of measures, and of reasons for the verdict, that are shown; the others are counted.
-pub(super) const SHOWN: usize = 4;
+use super::text::{SHOWN, measure_lines};
 
 impl Summary {
     /// The answers of the run in about ten lines; [`Summary`]'s `Display` shows everything.

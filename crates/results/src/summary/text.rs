@@ -10,8 +10,11 @@ use super::contents::Summary;
 use super::equilibrium::EquilibriumSummary;
 use super::measured::Measured;
 use super::parts::PopulationSummary;
-use super::short::SHOWN;
 use super::sizes::{RESOLVED_DIAMETERS, SizeSummary};
+
+/// Number of measures, and of reasons for the verdict, that the short text shows; the others are
+/// counted.
+pub(super) const SHOWN: usize = 4;
 
 /// Most bodies of which each has a line with its sizes.
 const MOST_BODIES: usize = 4;
