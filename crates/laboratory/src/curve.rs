@@ -22,6 +22,10 @@ pub const FAILED: f64 = 0.75;
 const DRIVEN_BACK: f64 = 0.5;
 /// Largest difference of two columns that hold the same, as a fraction of their range.
 const SAME: f64 = 1e-3;
+/// Share of the largest force by which that of two rows differs where a specimen fails at once.
+const DROP: f64 = 0.1;
+/// Share of the largest force by which the first one of a test is not above the last one.
+const STILL_LOADED: f64 = 0.01;
 /// Largest travel, m, force, N, and stress, Pa, that a test rig has.
 const LARGEST: [f64; 3] = [100.0, 1e9, 1e12];
 
@@ -178,10 +182,42 @@ impl Curve {
             let remedy = format!("a curve takes at least {FEWEST_ROWS}: export the entire test");
             return Err(Diagnostic::input("", problem, remedy));
         }
+        curve.read_backwards();
         curve.turn();
         curve.cut_return();
         curve.refuse_jumps()?;
         Ok(curve)
+    }
+
+    /// Reverses the rows of a file that has the last one first: the travel goes down from where the
+    /// force has not come back to its start, and the force jumps up where that of a specimen that
+    /// fails drops.
+    fn read_backwards(&mut self) {
+        let (travel, force) = (&self.travel_m, &self.force_n);
+        let last = force.len() - 1;
+        let jump = |up: f64| {
+            let steps = force
+                .windows(2)
+                .map(|pair| up * (pair[1].abs() - pair[0].abs()));
+            steps.fold(0.0, f64::max)
+        };
+        let peak_n = force
+            .iter()
+            .fold(0.0, |most: f64, force| most.max(force.abs()));
+        let starts_loaded = force[0].abs() - force[last].abs() > STILL_LOADED * peak_n;
+        let is_backwards = travel[last] < travel[0]
+            && starts_loaded
+            && jump(1.0) > DROP * peak_n
+            && jump(1.0) > 2.0 * jump(-1.0);
+        if is_backwards {
+            self.travel_m.reverse();
+            self.force_n.reverse();
+            self.lines.reverse();
+            self.notes.push(
+                "the travel goes down from a specimen that has failed: the rows are read from the last to the first"
+                    .to_owned(),
+            );
+        }
     }
 
     /// Makes travel and force positive where a test rig counts the other way.

@@ -30,6 +30,44 @@ fn comma(value: f64) -> String {
     format!("{value:.5}").replace('.', ",")
 }
 
+/// A file with the last row first, of a specimen that keeps a tenth of its load: the same curve as in
+/// the usual order. A rig that counts downwards keeps its order.
+#[test]
+fn rows_from_the_last_to_the_first() {
+    let (travel_m, force_n) = USUAL.rows();
+    let peak_n = force_n.iter().copied().fold(0.0, f64::max);
+    let failed = force_n.iter().position(|force| *force == peak_n).unwrap();
+    let force = |row: usize| {
+        if row > failed {
+            0.1 * peak_n
+        } else {
+            force_n[row]
+        }
+    };
+    let rows: Vec<String> = (0..travel_m.len())
+        .map(|row| format!("{:.6},{:.6}", 1e3 * travel_m[row], force(row)))
+        .collect();
+    let text = |rows: &[String]| format!("travel (mm),force (N)\n{}\n", rows.join("\n"));
+    let wanted = read(&text(&rows)).unwrap();
+    let backwards: Vec<String> = rows.iter().rev().cloned().collect();
+    let found = read(&text(&backwards)).unwrap();
+    assert_eq!(found.travel_m, wanted.travel_m);
+    assert_eq!(found.force_n, wanted.force_n);
+    assert!(
+        found.notes[0].contains("from the last to the first"),
+        "{:?}",
+        found.notes
+    );
+    let downwards: Vec<String> = rows.iter().map(|row| format!("-{row}")).collect();
+    let found = read(&text(&downwards)).unwrap();
+    assert_eq!(found.travel_m, wanted.travel_m);
+    assert!(
+        found.notes[0].contains("its sign is reversed"),
+        "{:?}",
+        found.notes
+    );
+}
+
 /// Equal curves come out of all of them.
 #[test]
 fn files_of_many_kinds_give_the_same_curve() {

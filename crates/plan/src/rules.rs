@@ -249,7 +249,9 @@ fn inlet_doubts(scene: &Scene, state: &State, inlet: &Inlet) -> Vec<String> {
             inlet.name, wall.model.name
         ));
     }
-    if let Some(most_per_s) = most_per_s(inlet, state) {
+    if let Some((places, most_per_s)) = places(inlet, state)
+        && f64::from(inlet.count) > places
+    {
         let wanted = match inlet.feed {
             Feed::Number(per_s) => per_s,
             Feed::Mass(kg_s) => {
@@ -271,9 +273,9 @@ fn inlet_doubts(scene: &Scene, state: &State, inlet: &Inlet) -> Vec<String> {
     doubts
 }
 
-/// Approximate number of bodies per second that can leave the region of an inlet. None: they do not
-/// move by themselves.
-fn most_per_s(inlet: &Inlet, state: &State) -> Option<f64> {
+/// Approximate number of bodies that find room in the region of an inlet, and how many can leave it
+/// per second. None: they do not move by themselves.
+fn places(inlet: &Inlet, state: &State) -> Option<(f64, f64)> {
     let speed = Vector3::from(inlet.velocity_m_s).norm();
     let reaches = inlet.templates.iter();
     let reaches = reaches.map(|(t, _)| 2.0 * state.clumps.templates[*t as usize].reach_m);
@@ -285,5 +287,5 @@ fn most_per_s(inlet: &Inlet, state: &State) -> Option<f64> {
     let places: f64 = (0..3)
         .map(|k| ((high[k] - low[k]) / wide_m).floor() + 1.0)
         .product();
-    Some(places * speed / wide_m)
+    Some((places, places * speed / wide_m))
 }
