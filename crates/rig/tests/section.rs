@@ -238,5 +238,5 @@ fn length_and_area_of_a_neck_say_where_the_crack_belongs() {
     assert!((section_m2 / 176.7e-6 - 1.0).abs() < 0.1, "{section_m2}");
     let (bar_m, mean_m2) = of_bone(&[run[0], run[1], "test.area=\"400 mm2\""]);
     assert!((bar_m - 6e-3).abs() < 1e-9, "{bar_m}");
-    assert!(mean_m2 > 1.5 * section_m2, "{mean_m2}");
+    assert!(mean_m2 > 1.1 * section_m2, "{mean_m2} {section_m2}");
 }
