@@ -1,7 +1,7 @@
 //! tests/verification/board.md: every claim beside a number of others. `board times` measures what
 //! the tests of the verification pages take, `board page` writes the table from the pages and from
 //! stored results; it runs nothing.
-//! `board penetration` runs a case of a round robin.
+//! `board penetration-25k` and `board penetration-50k` run cases of a round robin.
 
 mod page;
 mod quasi_static;
@@ -12,5 +12,5 @@ mod times;
 #[cfg(test)]
 pub(crate) use page::tables;
 pub(crate) use page::write;
-pub(crate) use robin::penetration;
+pub(crate) use robin::{penetration_25k, penetration_50k};
 pub(crate) use times::measure;

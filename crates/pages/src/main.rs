@@ -47,10 +47,11 @@ use bench::{Bench, Failed};
 type Work = fn(&Bench) -> Result<(), Failed>;
 
 /// The words, and what they do.
-const COMMANDS: [(&str, Work); 48] = [
+const COMMANDS: [(&str, Work); 49] = [
     ("alumina", alumina::alumina),
     ("board page", board::write),
-    ("board penetration", board::penetration),
+    ("board penetration-25k", board::penetration_25k),
+    ("board penetration-50k", board::penetration_50k),
     ("board times", board::measure),
     ("bodies", bodies::bodies),
     ("bulk heaps", bulk::heaps),

@@ -21,34 +21,40 @@ fn results(bed: &str) -> PathBuf {
     root().join(format!("tests/round-robin/penetration-{bed}.json"))
 }
 
-/// Runs the ball into each bed, or takes what a run has left, and stores its way.
-pub(crate) fn penetration(bench: &Bench) -> Result<(), Failed> {
-    for (bed, _) in BEDS {
-        let name = format!("penetration-{bed}");
-        let folder = bench.folder.join(&name);
-        let run = if bench.has(&folder.join("series.csv")) {
-            Run {
-                folder: folder.clone(),
-                settings: Vec::new(),
-                summary: dem_results::Summary::read(&folder.join("summary.json"))
-                    .ok_or("the run has no summary")?,
-            }
-        } else {
-            let file = root().join(format!("tests/round-robin/{name}-bed.vtp"));
-            bench.run(&name, SCENE, &[ONE_THREAD.to_owned(), body("bed", &file)])?
-        };
-        let rows = run.columns("series.csv", ["time_s", "ball_m"])?;
-        let way = rows
-            .iter()
-            .map(|[t, z]| json!([1e3 * t, 1e3 * (z - START_M)]));
-        let stored = json!({
-            "processor": processor(),
-            "processor_s": run.processor_s(),
-            "way_ms_mm": way.collect::<Vec<_>>(),
-        });
-        keep(&results(bed), &stored)?;
-    }
-    Ok(())
+/// Runs the ball into 25,000 spheres, or takes what a run has left, and stores its way.
+pub(crate) fn penetration_25k(bench: &Bench) -> Result<(), Failed> {
+    penetration(bench, "25k")
+}
+
+/// The same into 50,000 spheres.
+pub(crate) fn penetration_50k(bench: &Bench) -> Result<(), Failed> {
+    penetration(bench, "50k")
+}
+
+fn penetration(bench: &Bench, bed: &str) -> Result<(), Failed> {
+    let name = format!("penetration-{bed}");
+    let folder = bench.folder.join(&name);
+    let run = if bench.has(&folder.join("series.csv")) {
+        Run {
+            folder: folder.clone(),
+            settings: Vec::new(),
+            summary: dem_results::Summary::read(&folder.join("summary.json"))
+                .ok_or("the run has no summary")?,
+        }
+    } else {
+        let file = root().join(format!("tests/round-robin/{name}-bed.vtp"));
+        bench.run(&name, SCENE, &[ONE_THREAD.to_owned(), body("bed", &file)])?
+    };
+    let rows = run.columns("series.csv", ["time_s", "ball_m"])?;
+    let way = rows
+        .iter()
+        .map(|[t, z]| json!([1e3 * t, 1e3 * (z - START_M)]));
+    let stored = json!({
+        "processor": processor(),
+        "processor_s": run.processor_s(),
+        "way_ms_mm": way.collect::<Vec<_>>(),
+    });
+    keep(&results(bed), &stored)
 }
 
 /// The displacement on the line between two rows (time, displacement).
