@@ -30,8 +30,8 @@ fn comma(value: f64) -> String {
     format!("{value:.5}").replace('.', ",")
 }
 
-/// A file with the last row first, of a specimen that keeps a tenth of its load: the same curve as in
-/// the usual order. A rig that counts downwards keeps its order.
+/// A file with the last row first, of a specimen that keeps a tenth of its load: the same curve as
+/// in the usual order. A rig that counts downwards keeps its order.
 #[test]
 fn rows_from_the_last_to_the_first() {
     let (travel_m, force_n) = USUAL.rows();

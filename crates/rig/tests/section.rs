@@ -213,7 +213,8 @@ fn dimensions_of_the_measured_specimen_are_taken() {
     );
 }
 
-/// Half the length in which the crack belongs, m, and the section, m2, of the dog bone between bars.
+/// Half the length in which the crack belongs, m, and the section, m2, of the dog bone between
+/// bars.
 fn of_bone(set: &[&str]) -> (f64, f64) {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),

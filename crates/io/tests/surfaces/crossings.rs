@@ -1,6 +1,6 @@
 //! Parts that cross or overlap form their union.
 
-use super::solids::{ascii, binary, block, turned};
+use super::solids::{Facet, ascii, binary, block, turned};
 use super::{METRES, read};
 
 #[test]
@@ -49,6 +49,20 @@ fn overlapping_parts_form_their_union() {
     }
 }
 
+/// Parts, wound either way, are read as a solid of this volume.
+fn assert_union(facets: Vec<Facet>, union: f64, within: f64) {
+    for facets in [turned(&facets), facets] {
+        let surface = read(&binary(&facets), METRES);
+        assert!(
+            (surface.volume_m3() / union - 1.0).abs() < within,
+            "{} not {union}: {:?} {:?}",
+            surface.volume_m3(),
+            surface.shells,
+            surface.warnings
+        );
+    }
+}
+
 #[test]
 fn parts_that_overlap_with_a_face_in_common_form_their_union() {
     let first = block([0.0; 3], [1.0; 3]);
@@ -56,18 +70,7 @@ fn parts_that_overlap_with_a_face_in_common_form_their_union() {
         (block([0.0; 3], [2.0, 1.0, 1.0]), 2.0),
         (block([0.0; 3], [3.0, 1.0, 2.0]), 6.0),
     ] {
-        for facets in [
-            [first.clone(), second.clone()].concat(),
-            turned(&[first.clone(), second].concat()),
-        ] {
-            let surface = read(&binary(&facets), METRES);
-            assert!(
-                (surface.volume_m3() / union - 1.0).abs() < 1e-5,
-                "{} not {union}: {:?}",
-                surface.volume_m3(),
-                surface.shells
-            );
-        }
+        assert_union([first.clone(), second].concat(), union, 1e-5);
     }
 }
 
@@ -130,16 +133,7 @@ fn three_parts_with_faces_in_common_form_their_union() {
                 block(min, max)
             })
             .collect();
-        for facets in [turned(&facets), facets] {
-            let surface = read(&binary(&facets), METRES);
-            assert!(
-                (surface.volume_m3() / union - 1.0).abs() < 1e-3,
-                "{} not {union}: {boxes:?} {:?} {:?}",
-                surface.volume_m3(),
-                surface.shells,
-                surface.warnings
-            );
-        }
+        assert_union(facets, union, 1e-3);
     }
 }
 

@@ -139,7 +139,8 @@ pub(crate) fn across(body: &Body, axis: usize) -> usize {
         .count()
 }
 
-/// In each of as many strips across the width, m, as spheres fit, the sphere with the least distance.
+/// In each of as many strips across the width, m, as spheres fit, the sphere with the least
+/// distance.
 pub(crate) fn row(
     body: &Body,
     diameter_m: f64,
