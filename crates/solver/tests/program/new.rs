@@ -274,8 +274,36 @@ fn wrong_answers_are_refused() {
             "--size: 'large' is not a length",
         ),
         (
-            &["drop", "--size", "300"],
+            &["drop", "--size", "300 m"],
             "--size: 300 m is not between 10 um and 100 m",
+        ),
+        (
+            &["drop", "--height", "3 m", "--size", "20"],
+            "--size: '20' has no unit; write it with its unit, such as \"20 mm\"",
+        ),
+        (
+            &["drop", "--height", " 3 "],
+            "--height: '3' has no unit; write it with its unit, such as \"3 m\"",
+        ),
+        (
+            &["drop", "--height", "0"],
+            "--height: '0' is not above 0; write a length above 0",
+        ),
+        (
+            &["drop", "--mass", "2e-2"],
+            "--mass: '2e-2' has no unit; write it with its unit, such as \"2e-2 g\"",
+        ),
+        (
+            &["chute", "--speed", "3"],
+            "--speed: '3' has no unit; write it with its unit, such as \"3 m/s\"",
+        ),
+        (
+            &["mill", "--speed", "6"],
+            "--speed: '6' has no unit; write it with its unit, such as \"6 rpm\"",
+        ),
+        (
+            &["crusher", "--gap", "0.02"],
+            "--gap: '0.02' has no unit; write it with its unit, such as \"0.02 mm\"",
         ),
         (&["drop", "--shape", "text.stl"], "--shape: text.stl"),
         (

@@ -47,12 +47,13 @@ pub(super) fn answers(arguments: &NewArguments) -> Result<Answers> {
         false => surface.volume_m3(),
     };
     let usual_kg = template.density_kg_m3() * volume_m3;
+    let usual = Value::new(usual_kg, "kg").text();
     let asked = Question {
         option: "--mass",
         what: "of one body",
-        default: Value::new(usual_kg, "kg").text(),
+        default: usual.clone(),
     };
-    let read = |text: &str| read_mass(text, volume_m3);
+    let read = |text: &str| read_mass(text, &usual, volume_m3);
     let mass_kg = questions.answer(&asked, arguments.mass.as_deref(), read)?;
     let body = Measured {
         extent_m: extent_m(&surface),
@@ -90,12 +91,14 @@ fn shape<R: BufRead, W: Write>(
         None => surface_of(stl(&own.facets()).as_bytes(), "the shape")?,
     };
     let longest_m = extent_m(&original).into_iter().fold(0.0, f64::max);
+    let usual = Value::length(longest_m).text();
     let asked = Question {
         option: "--size",
         what: "its largest extent",
-        default: Value::length(longest_m).text(),
+        default: usual.clone(),
     };
-    let size_m = questions.answer(&asked, arguments.size.as_deref(), read_size)?;
+    let read = |text: &str| read_size(text, &usual);
+    let size_m = questions.answer(&asked, arguments.size.as_deref(), read)?;
     let facets = scaled(&original, size_m.map_or(1.0, |size_m| size_m / longest_m));
     let surface = surface_of(stl(&facets).as_bytes(), &original.source)?;
     Ok((facets, surface))
@@ -110,13 +113,14 @@ fn situation<R: BufRead, W: Write>(
     let Some(situation) = template.situation(body) else {
         return Ok(0.0);
     };
+    let usual = Value::new(situation.default_si, situation.dimension.si).text();
     let asked = Question {
         option: situation.option,
         what: situation.what,
-        default: Value::new(situation.default_si, situation.dimension.si).text(),
+        default: usual.clone(),
     };
     let read = |text: &str| {
-        let si = positive(text, situation.dimension)?;
+        let si = positive(text, &usual, situation.dimension)?;
         situation.check(si).map(|()| si)
     };
     let given = arguments.situation(situation.option);
@@ -146,23 +150,34 @@ fn extent_m(surface: &Surface) -> [f64; 3] {
     surface.extent().map(|extent| extent * surface.unit_m)
 }
 
-fn positive(text: &str, dimension: &Dimension) -> Result<f64> {
+/// A number above 0 with its unit, in SI. One without a unit is refused: who writes 20 means mm as
+/// often as m. `usual` is the answer by default, whose unit is named.
+fn positive(text: &str, usual: &str, dimension: &Dimension) -> Result<f64> {
     let value = quantity(text, dimension)?;
-    if value > 0.0 {
-        return Ok(value);
+    if value <= 0.0 {
+        return Err(Diagnostic::input(
+            "",
+            format!("'{text}' is not above 0"),
+            format!(
+                "write a {} above 0, such as {}",
+                dimension.name, dimension.example
+            ),
+        ));
     }
-    Err(Diagnostic::input(
-        "",
-        format!("'{text}' is not above 0"),
-        format!(
-            "write a {} above 0, such as {}",
-            dimension.name, dimension.example
-        ),
-    ))
+    let number = text.trim();
+    if number.parse::<f64>().is_ok() {
+        let unit = usual.split_once(' ').map_or("", |(_, unit)| unit);
+        return Err(Diagnostic::input(
+            "",
+            format!("'{number}' has no unit"),
+            format!("write it with its unit, such as \"{number} {unit}\""),
+        ));
+    }
+    Ok(value)
 }
 
-fn read_size(text: &str) -> Result<f64> {
-    let size_m = positive(text, &LENGTH)?;
+fn read_size(text: &str, usual: &str) -> Result<f64> {
+    let size_m = positive(text, usual, &LENGTH)?;
     let [smallest, largest] = SIZES_M;
     if (smallest..=largest).contains(&size_m) {
         return Ok(size_m);
@@ -179,8 +194,8 @@ fn read_size(text: &str) -> Result<f64> {
     ))
 }
 
-fn read_mass(text: &str, volume_m3: f64) -> Result<f64> {
-    let mass_kg = positive(text, &MASS)?;
+fn read_mass(text: &str, usual: &str, volume_m3: f64) -> Result<f64> {
+    let mass_kg = positive(text, usual, &MASS)?;
     let [lightest, heaviest] = [LIGHTEST_KG_M3, HEAVIEST_KG_M3];
     let density = mass_kg / volume_m3;
     if (lightest..=heaviest).contains(&density) {
