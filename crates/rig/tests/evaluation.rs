@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use dem_laboratory::Specimen;
 use dem_laboratory::TestType;
+use dem_laboratory::figure::{Figure, Source};
 use dem_laboratory::test_result::TestResult;
 use dem_laboratory::theory::{Beam, KAPPA};
 use dem_physics::bond::failure::Cause;
@@ -486,4 +487,24 @@ fn a_crack_elsewhere_and_a_rate_that_matters_are_doubts() {
     );
     // Its slope has not changed.
     assert!(!doubts.contains("stiffness"), "{doubts}");
+}
+
+/// The stress of a disc at another load is compared over its closed form at that load.
+#[test]
+fn figures_with_a_closed_form_are_compared_over_it() {
+    let beam = setup(Specimen::Beam(BEAM));
+    let with = |stress_pa: f64, theory_pa: f64| {
+        let test = test(TestType::FourPointBending);
+        let mut result = evaluated(&test, &beam, &record(2e4, 50.0), true);
+        let figure = Figure::new("stress", stress_pa, "Pa", Some(theory_pa));
+        result.figures.push(figure.by(Source::ClosedForm));
+        result
+    };
+    for (slow, change) in [([110e3, 121e3], 0.0), ([120e3, 100e3], 0.32)] {
+        let mut slow = with(slow[0], slow[1]);
+        slow.compare(&with(100e3, 110e3));
+        let changes = &slow.half_the_rate_changes;
+        let found = changes.iter().find(|figure| figure.name == "stress");
+        assert!((found.unwrap().value - change).abs() < 1e-12, "{found:?}");
+    }
 }
