@@ -324,7 +324,7 @@ fn wrong_answers_are_refused() {
         ),
         (
             &["crusher", "--gap", "61 mm"],
-            "--gap: 61 mm is not between 6 mm and 54 mm",
+            "--gap: 61 mm is not between 12 mm and 54 mm",
         ),
         (
             &["silo", "--gap", "1 mm"],

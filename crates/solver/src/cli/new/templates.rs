@@ -130,7 +130,7 @@ impl Template {
         match self {
             Self::Drop => Shape::Cylinder(30.0, 24.0),
             Self::Chute => Shape::Block([50.0, 45.0, 40.0]),
-            Self::Crusher => Shape::Cylinder(60.0, 60.0),
+            Self::Crusher => Shape::Disc(60.0, 60.0),
             Self::Mill => Shape::Block([30.0, 25.0, 20.0]),
             Self::Silo => Shape::Cylinder(8.0, 8.0),
             Self::Cone => Shape::Ball(30.0),
@@ -191,7 +191,8 @@ impl Template {
                 )
             }
             Self::Crusher => {
-                let range = [0.1, 0.9].map(|factor| factor * width_m);
+                // Spheres of a tenth of the width pass the lowest when it is closed.
+                let range = [0.2, 0.9].map(|factor| factor * width_m);
                 ("between the jaws", &LENGTH, width_m / 3.0, range)
             }
             Self::Silo => {
@@ -358,6 +359,10 @@ fn deck(body: &Measured, opening_m: f64) -> Deck {
 fn crusher_values(body: &Measured, gap_m: f64) -> Vec<(&'static str, Value)> {
     let [x, _, z] = body.extent_m;
     let nip = HEIGHT_OVER_WIDTH * (1.06 * x - gap_m);
+    // The jaw is as long again above the lump as below it: near its pivot it would hardly move.
+    let top = 2.0 * nip + 1.3 * z;
+    // It closes by 0.4 of the gap, so that single spheres pass.
+    let swing_deg = (0.4 * gap_m / top).to_degrees().min(3.0);
     // A lump falls by its own size in a time that goes with the root of its size.
     let stroke = 0.2 * (body.size_m() / 60e-3).sqrt();
     vec![
@@ -365,7 +370,8 @@ fn crusher_values(body: &Measured, gap_m: f64) -> Vec<(&'static str, Value)> {
         ("frequency", Value::new(1.0 / stroke, "Hz")),
         ("gap", Value::length(gap_m)),
         ("nip", Value::length(nip)),
-        ("top", Value::length(nip + 1.3 * z)),
+        ("top", Value::length(top)),
+        ("swing", Value::new(swing_deg, "deg")),
     ]
 }
 
