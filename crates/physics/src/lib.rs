@@ -1,6 +1,7 @@
 //! Physics as functions of plain numbers, independent of storage, threads, files and scenes: laws
 //! of bonds and contacts, rotation, shapes of walls, and bodies made of spheres.
 
+pub mod bending;
 pub mod bond;
 pub mod breakage;
 pub mod chebyshev;

@@ -8,6 +8,7 @@
     reason = "a test stops where it fails, and says what it measured"
 )]
 
+mod bending;
 mod bond;
 mod contact;
 mod machine;

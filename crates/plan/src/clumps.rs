@@ -11,7 +11,9 @@ use super::bodies::{place_body, stays_rigid};
 use super::contacts::Kinds;
 use dem_engine::stages::population::inlets::angular_momentum;
 use dem_engine::state::bonds::Bonds;
-use dem_engine::state::clumps::{Clump, Scatter, Template, breaks_from_n_m, reach_m, sub_spheres};
+use dem_engine::state::clumps::{
+    Clump, Scatter, Template, breaks_from_n_m, reach_m, slender_body, sub_spheres,
+};
 use dem_engine::state::particles::Particles;
 use dem_physics::rotation::numbers;
 use dem_physics::rotation::rotation;
@@ -174,6 +176,7 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
             .position(|material| *material == entry.material)
             .unwrap_or(0) as u8,
         breaks_from_n_m: breaks_from_n_m(&bonds, &spheres),
+        slender: slender_body(&bonds, &spheres, properties.moments_kg_m2),
         bonds: Arc::new(bonds),
         file_number: Arc::new(file_number),
         ids: Vec::new(),

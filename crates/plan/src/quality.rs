@@ -7,13 +7,14 @@ use dem_io::Body;
 use dem_io::body::few_across;
 use dem_io::disjoint::DisjointSets;
 use dem_io::units::significant;
-use dem_scene::{BodySource, Scene};
+use dem_scene::{BodySource, BondKind, Scene};
 use nalgebra::Vector3;
 
 use super::bodies::{sphere_density_kg_m3, stays_rigid};
 use dem_engine::stages::search::neighbours::near_pairs;
 use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
 use dem_engine::state::particles::Pose;
+use dem_physics::bond::failure::EquivalentStress;
 
 /// As dem-pack: number of bonds per particle below which a body is hardly rigid.
 const ENOUGH_BONDS: f64 = 3.0;
@@ -25,6 +26,8 @@ const DOUBLED: f64 = 1.8;
 const FAR: f64 = 3.0;
 /// Width of a chain of spheres over the largest diameter.
 const CHAIN: f64 = 1.05;
+/// Radius of a bond over that of the smaller sphere from which it is no neck between the two.
+const THICK: f64 = 2.0;
 /// Bonds are calibrated for spheres whose mean diameter differs by at most this fraction.
 const SAME_DIAMETER: f64 = 0.1;
 /// And in a body whose inverse number of spheres across differs by at most this: with 10 across and
@@ -72,6 +75,11 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
             let seen = faults(body).into_iter();
             (quality.warnings).extend(seen.map(|text| format!("{named}: {text}")));
         }
+        if let Some(kind) = bond_kind(scene, name) {
+            let seen = unbreakable_row(kind, body).into_iter();
+            let seen = seen.chain(thick_bond(kind, body));
+            (quality.warnings).extend(seen.map(|text| format!("{named}: {text}")));
+        }
         let coarse = match calibrated(scene, name, body) {
             Calibrated::No => coarse,
             Calibrated::Here => None,
@@ -95,11 +103,48 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
     quality
 }
 
+/// The bonds of a body. None: it has none.
+fn bond_kind<'a>(scene: &'a Scene, name: &str) -> Option<&'a BondKind> {
+    scene.bonds.get(scene.bodies.get(name)?.bond_kind.as_ref()?)
+}
+
+/// A sentence on a row of spheres with bonds that do not break when they are bent.
+fn unbreakable_row(kind: &BondKind, body: &Body) -> Option<String> {
+    let failure = &kind.failure;
+    let counts_bending = failure.equivalent_stress != EquivalentStress::ForcesOnly
+        || failure.tensile_strength_pa.is_some()
+        || failure.compressive_strength_pa.is_some();
+    let is_long = body.radii.len() >= FEWEST && is_row(body);
+    (is_long && failure.von_mises_strength_pa.is_some() && !counts_bending).then(|| {
+        "it is a single row of bonds, and equivalent_stress = \"forces-only\" does not break a bond that is only bent or twisted, so that it stays whole however far it is bent; write equivalent_stress = \"tensile-edge\", or tensile_strength".to_owned()
+    })
+}
+
+/// A sentence on bonds much thicker than their spheres.
+fn thick_bond(kind: &BondKind, body: &Body) -> Option<String> {
+    let smaller_m = |[a, b]: &[u32; 2]| body.radii[*a as usize].min(body.radii[*b as usize]);
+    let (radii, place) = match kind.radius_factor {
+        Some(factor) => (vec![factor], "radius_factor"),
+        None => {
+            let each = body.bonds.iter().zip(&body.bond_radii);
+            let ratios = each.map(|(ends, radius_m)| radius_m / smaller_m(ends));
+            (ratios.collect(), "the radii of its bonds")
+        }
+    };
+    let most = radii.into_iter().fold(0.0, f64::max);
+    (most > THICK).then(|| {
+        format!(
+            "a bond is {} times as thick as the smaller of its spheres, and stiffer in bending by the fourth power of this: check {place}, {THICK} or less is expected",
+            significant(most, 3)
+        )
+    })
+}
+
 /// A sentence on a body whose bonds cannot hold a sphere that hangs on one of them: it falls apart
 /// into its spheres, which are grains and not a resolution of pieces.
 fn granulate(scene: &Scene, name: &str, body: &Body) -> Option<String> {
     let entry = scene.bodies.get(name)?;
-    let failure = &scene.bonds.get(entry.bond_kind.as_ref()?)?.failure;
+    let failure = &bond_kind(scene, name)?.failure;
     let strengths = [failure.tensile_strength_pa, failure.von_mises_strength_pa];
     let strength_pa = strengths.into_iter().flatten().reduce(f64::min)?;
     let density_kg_m3 = sphere_density_kg_m3(scene, name, entry, body).ok()?;
@@ -143,11 +188,7 @@ enum Calibrated {
 }
 
 fn calibrated(scene: &Scene, name: &str, body: &Body) -> Calibrated {
-    let kind = scene
-        .bodies
-        .get(name)
-        .and_then(|entry| entry.bond_kind.as_ref());
-    let kind = kind.and_then(|kind| scene.bonds.get(kind));
+    let kind = bond_kind(scene, name);
     if kind.is_some_and(|kind| kind.size_correction) {
         return Calibrated::Here;
     }
@@ -265,6 +306,15 @@ fn few_across_box(body: &Body) -> Option<String> {
     few_across(thickness_m / mean_m, side, thickness_m)
 }
 
+/// Whether the bonds of a body join its spheres to one row, straight, bent or closed.
+fn is_row(body: &Body) -> bool {
+    let mut bonds = vec![0_u32; body.radii.len()];
+    for end in body.bonds.iter().flatten() {
+        bonds[*end as usize] += 1;
+    }
+    bonds.into_iter().all(|count| count <= 2)
+}
+
 /// The smallest length of the box of a body whose spheres fill a shape, m. None: it is a bar of
 /// single spheres or of a few, whose bonds are the material.
 fn packing_thickness_m(body: &Body) -> Option<f64> {
@@ -273,5 +323,6 @@ fn packing_thickness_m(body: &Body) -> Option<f64> {
         .collect();
     let [_, width_m, thickness_m] = box_lengths_m(&spheres);
     let diameter_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
-    (spheres.len() >= FEWEST && width_m > CHAIN * diameter_m).then_some(thickness_m)
+    let is_packing = spheres.len() >= FEWEST && width_m > CHAIN * diameter_m && !is_row(body);
+    is_packing.then_some(thickness_m)
 }

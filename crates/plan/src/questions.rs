@@ -2,7 +2,7 @@
 //! without an effect.
 
 use dem_io::units::{show_length, significant};
-use dem_scene::{BondKind, Contact, ContactLaw, Material, Scene, Statistic};
+use dem_scene::{BondKind, Contact, ContactLaw, Integrator, Material, Scene, Statistic};
 use nalgebra::Vector3;
 
 use super::masses::sphere_density_kg_m3;
@@ -67,6 +67,7 @@ pub(super) fn notes(
     notes.extend(surface_tensions(scene));
     notes.extend(frictions(scene));
     notes.extend(gravity(scene));
+    notes.extend(braked_impacts(scene));
     notes.extend(too_weak(scene, state, bodies));
     notes.extend(strengths(scene, unused_bonds));
     notes.extend(without_effect(scene, state));
@@ -323,6 +324,19 @@ fn few_rows(scene: &Scene) -> Vec<String> {
         )
     });
     said.collect()
+}
+
+/// Local damping of bodies that hit something.
+fn braked_impacts(scene: &Scene) -> Option<String> {
+    let damping = scene.run.local_damping;
+    let moves_freely = scene.test.is_none() && scene.supports.is_empty();
+    let is_run = scene.run.integrator != Integrator::Static;
+    let hits = moves_freely && is_run && !scene.contacts.is_empty();
+    (hits && damping > 0.0).then(|| {
+        format!(
+            "run.local_damping = {damping} also brakes bodies while they touch a wall: they rebound less than the restitution of [contacts] says, and slide less far; for impacts, damp the bonds instead"
+        )
+    })
 }
 
 /// Gravity that is missing or of another unit.

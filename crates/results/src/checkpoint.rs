@@ -27,7 +27,7 @@ use dem_io::safe_write::write_file;
 
 /// Version of the layout and of the state in it: increased when either changes. Other versions are
 /// refused.
-pub const FORMAT_VERSION: u32 = 24;
+pub const FORMAT_VERSION: u32 = 25;
 
 /// Program and version that writes checkpoints.
 const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));

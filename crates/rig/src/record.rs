@@ -87,7 +87,7 @@ pub struct Record {
     /// Sums over the interval that has not ended, and its number of steps.
     open: (Row, u64),
     /// Largest load of a row, N.
-    largest_n: f64,
+    pub largest_n: f64,
     /// Whether bonds had broken when the load of a row was below half of that, before the end of
     /// the pulse of a test with bars.
     pub fell: bool,

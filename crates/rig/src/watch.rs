@@ -76,6 +76,11 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// Whether all answers of the test are those at its largest load.
+    pub fn answers_at_its_peak(&self) -> bool {
+        !self.test.kind.is_dynamic() && !self.test.kind.has_residual()
+    }
+
     /// Records a step; returns whether the test is over.
     pub fn note(&self, record: &mut Record, state: &State) -> bool {
         record.note(&self.setup, &self.loading, state)

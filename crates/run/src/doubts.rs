@@ -8,9 +8,11 @@ use std::collections::BTreeSet;
 
 use dem_io::units::{show_length, significant};
 use dem_scene::{Scene, StartAs};
+use nalgebra::Vector3;
 
 use self::still_flying::{Flying, QUIET, still_flying};
-use super::monitors::{Extreme, Monitors};
+use super::changes::last_change_s;
+use super::monitors::{Extreme, Monitors, stand_n};
 use super::taken_in::needed_j_kg;
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
 use dem_engine::check::validity::{indentation_warning, plastic_strain_warning, strain_warning};
@@ -25,6 +27,9 @@ const LATE: f64 = 0.05;
 /// in the middle of an impact, and number of broken bonds below which nothing is said of it.
 const BURST: f64 = 0.2;
 const FEW_BREAKS: u32 = 100;
+/// Force of standing walls at the end of a run, over the largest in the run and over the weight of
+/// all that moves, from which an impact goes on.
+const UNDER_IMPACT: [f64; 2] = [0.2, 3.0];
 /// Number of bodies that a warning names; the others are counted.
 const NAMED: usize = 3;
 
@@ -45,7 +50,9 @@ impl Monitors {
         warnings.extend(self.untouched(state, scene, bodies));
         if scene.test.is_none() {
             warnings.extend(self.still_breaking(state, scene));
+            warnings.extend(self.ends_in_an_impact(state));
         }
+        warnings.extend(self.all_fell_past(state));
         warnings.extend(
             flying
                 .filter(|flying| flying.may_break)
@@ -105,27 +112,26 @@ impl Monitors {
         warnings
     }
 
+    /// Laws beyond their range: in a test whose answers are those at its largest load, up to there.
     fn beyond_the_laws(&self) -> Vec<String> {
-        let where_ = |extreme: &Extreme| {
-            let far_m = extreme
-                .place_m
-                .iter()
-                .fold(0.0_f64, |far, x| far.max(x.abs()));
-            // Rounding errors are shown as 0.
-            let told = |x: f64| if x.abs() < 1e-9 * far_m { 0.0 } else { x };
-            let [x, y, z] = extreme.place_m.map(|x| significant(told(x), 4));
-            let time = significant(extreme.time_s, 4);
-            format!(
-                " between {}, at ({x}, {y}, {z}) m, {time} s",
-                extreme.between
-            )
+        match &self.at_peak {
+            Some((_, at_peak)) => beyond(at_peak.each_ref()),
+            None => beyond(self.extremes()),
+        }
+    }
+
+    /// Notes on laws beyond their range in the pieces of a test after its largest load.
+    pub(super) fn beyond_after_the_peak(&self) -> Vec<String> {
+        let Some((_, at_peak)) = &self.at_peak else {
+            return Vec::new();
         };
-        let (strain, pressed) = (&self.bond_strain, &self.indentation);
-        let yielded = &self.plastic_strain;
-        let strained = strain_warning(strain.largest, &where_(strain));
-        let yielded = plastic_strain_warning(yielded.largest, &where_(yielded));
-        let pressed = indentation_warning(pressed.largest, &where_(pressed));
-        strained.into_iter().chain(yielded).chain(pressed).collect()
+        let [before, after] = [beyond(at_peak.each_ref()), beyond(self.extremes())];
+        let later = after.into_iter().filter(|said| !before.contains(said));
+        later
+            .map(|said| {
+                format!("after the largest load, whose answers this does not touch: {said}")
+            })
+            .collect()
     }
 
     /// Bodies that could have touched something but did not.
@@ -212,6 +218,36 @@ impl Monitors {
         })
     }
 
+    /// Warning that something hits a standing wall at the end. Not while anything is moved, loaded
+    /// or fed: such a process may end at any moment.
+    fn ends_in_an_impact(&self, state: &State) -> Option<String> {
+        let is_driven = last_change_s(state) >= (1.0 - LATE) * state.time_s;
+        if is_driven || !state.model.rules.inlets.is_empty() {
+            return None;
+        }
+        let [of_largest, of_weight] = UNDER_IMPACT;
+        let (now_n, largest_n) = (stand_n(state), self.largest_stand_n);
+        let weight_n = state.ledger.mass_kg() * Vector3::from(state.model.gravity_m_s2).norm();
+        (now_n > of_largest * largest_n && now_n > of_weight * weight_n).then(|| {
+            format!(
+                "the run ends in the middle of an impact: the walls push with {} N at the end, {} % of their largest force in the run, and the weight is {} N; set run.end_time later than {} s",
+                significant(now_n, 3),
+                significant(100.0 * now_n / largest_n, 3),
+                significant(weight_n, 3),
+                significant(state.time_s, 4),
+            )
+        })
+    }
+
+    /// Warning that bodies which inlets have fed touch each other, but no wall.
+    fn all_fell_past(&self, state: &State) -> Option<String> {
+        let is_fed = state.population.inlets.iter().any(|come| come.bodies > 0);
+        let misses_all = !state.walls.is_empty() && self.has_touched_no_wall();
+        (is_fed && misses_all && !self.touched.is_empty()).then(|| {
+            "nothing that the inlets fed has touched a wall; check the places of walls and inlets, or set run.end_time later".to_owned()
+        })
+    }
+
     /// The fragments that still move apart at the end: a warning if they may break further, else a
     /// note. Not for laboratory tests, nor while an inlet still feeds.
     pub(super) fn flying(
@@ -233,6 +269,28 @@ impl Monitors {
             goes_on,
         )
     }
+}
+
+/// Sentences on extremes of strain, plastic strain and indentation beyond the laws.
+fn beyond([strain, yielded, pressed]: [&Extreme; 3]) -> Vec<String> {
+    let where_ = |extreme: &Extreme| {
+        let far_m = extreme
+            .place_m
+            .iter()
+            .fold(0.0_f64, |far, x| far.max(x.abs()));
+        // Rounding errors are shown as 0.
+        let told = |x: f64| if x.abs() < 1e-9 * far_m { 0.0 } else { x };
+        let [x, y, z] = extreme.place_m.map(|x| significant(told(x), 4));
+        let time = significant(extreme.time_s, 4);
+        format!(
+            " between {}, at ({x}, {y}, {z}) m, {time} s",
+            extreme.between
+        )
+    };
+    let strained = strain_warning(strain.largest, &where_(strain));
+    let flowed = plastic_strain_warning(yielded.largest, &where_(yielded));
+    let pressed = indentation_warning(pressed.largest, &where_(pressed));
+    strained.into_iter().chain(flowed).chain(pressed).collect()
 }
 
 /// Names of bodies on which loads act and which no support holds.

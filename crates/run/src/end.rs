@@ -85,6 +85,8 @@ impl Run<'_> {
         summary.notes.extend(note.map(|flying| flying.text));
         summary.notes.extend(parted_without_contacts(&self.state));
         if !is_stopped {
+            let monitors = &self.progress.monitors;
+            summary.notes.extend(monitors.beyond_after_the_peak());
             summary.notes.extend(zero_measures(&self.probes));
             let pieces = fragments.as_deref().unwrap_or_default();
             summary.notes.extend(past_walls(&self.state, pieces));

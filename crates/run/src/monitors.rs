@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use dem_scene::Scene;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::breaks::Breaks;
@@ -58,6 +59,11 @@ pub(super) struct Monitors {
     pub(super) breaks: Breaks,
     /// Largest kinetic energy at a row of the time series, J.
     pub(super) largest_kinetic_j: f64,
+    /// Largest force of standing walls on all that touches them, N.
+    pub(super) largest_stand_n: f64,
+    /// Of a test whose answers are those at its largest load: this load, N, and the extremes at it,
+    /// of strain, plastic strain and indentation.
+    pub(super) at_peak: Option<(f64, [Extreme; 3])>,
 }
 
 impl Monitors {
@@ -106,6 +112,27 @@ impl Monitors {
                 self.came.insert(body.clone());
             }
         }
+    }
+
+    /// Records that the largest load of a test has been this so far, N.
+    pub(super) fn note_peak(&mut self, largest_n: f64) {
+        if self
+            .at_peak
+            .as_ref()
+            .is_none_or(|(before_n, _)| largest_n > *before_n)
+        {
+            self.at_peak = Some((largest_n, self.extremes().map(Extreme::clone)));
+        }
+    }
+
+    /// The extremes of strain, plastic strain and indentation so far.
+    pub(super) fn extremes(&self) -> [&Extreme; 3] {
+        [&self.bond_strain, &self.plastic_strain, &self.indentation]
+    }
+
+    /// Records the force of standing walls.
+    pub(super) fn note_stand(&mut self, state: &State) {
+        self.largest_stand_n = self.largest_stand_n.max(stand_n(state));
     }
 
     /// Records the kinetic energy, J.
@@ -245,11 +272,23 @@ impl Monitors {
         self.touched_walls.contains(&number)
     }
 
+    /// Whether nothing has touched any wall.
+    pub(super) fn has_touched_no_wall(&self) -> bool {
+        self.touched_walls.is_empty()
+    }
+
     /// Whether this is the name of a body of the scene that nothing has touched, of those that
     /// are looked at.
     pub(super) fn is_untouched(&self, scene: &Scene, name: &str) -> bool {
         scene.bodies.contains_key(name) && !self.touched.contains(name)
     }
+}
+
+/// Force of the walls that do not move on all that touches them, N.
+pub(super) fn stand_n(state: &State) -> f64 {
+    let standing = state.walls.iter().filter(|wall| !wall.does_work());
+    let forces = standing.map(|wall| Vector3::from(wall.total_load()[0]));
+    forces.sum::<Vector3<f64>>().norm()
 }
 
 /// The strain of a bond at this moment, and what it joins if that is beyond its law.

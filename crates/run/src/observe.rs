@@ -26,6 +26,7 @@ use dem_engine::state::events::PopulationEvent;
 use dem_engine::step::number_of;
 use dem_plan::measure::{Probe, read_probes, renumber as renumber_probes};
 use dem_results::Balance;
+use dem_rig::watch::Watch;
 
 /// Wall time between two checkpoints unless the scene sets an interval.
 const CHECKPOINT_EVERY: Duration = Duration::from_mins(1);
@@ -95,6 +96,10 @@ impl Run<'_> {
         self.note_step()?;
         let test = self.watch.as_ref();
         let over = test.is_some_and(|watch| watch.note(&mut self.progress.test, &self.state));
+        if test.is_some_and(Watch::answers_at_its_peak) {
+            let largest_n = self.progress.test.largest_n;
+            self.progress.monitors.note_peak(largest_n);
+        }
         let due = self.due(over);
         let since = due.any().then(Instant::now);
         if due.any() {
@@ -185,6 +190,7 @@ impl Run<'_> {
     fn note_step(&mut self) -> Result<()> {
         let (state, bodies, monitors) = (&self.state, &self.bodies, &mut self.progress.monitors);
         monitors.note_breaks(state, bodies);
+        monitors.note_stand(state);
         if state.steps.is_multiple_of(EDGES_EVERY) {
             monitors.look_at_edges(state, bodies);
         }

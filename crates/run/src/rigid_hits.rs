@@ -147,7 +147,7 @@ fn sentence(name: &str, own: &OfBody, scene: &Scene) -> String {
         format!("add [replacement.{name}], or start_as = \"bonded\" to [bodies.{name}]")
     };
     format!(
-        "'{name}' took {hits} as a rigid body or part, at which its bonds would break: the hardest with a mean stress (Love and Weber) of {} Pa, {} times their strength of {} Pa, at ({x}, {y}, {z}) m, {} s; {remedy}",
+        "'{name}' took {hits} as a rigid body or part, at which its bonds would break: the hardest with a stress (mean by Love and Weber, or of bending) of {} Pa, {} times their strength of {} Pa, at ({x}, {y}, {z}) m, {} s; {remedy}",
         significant(own.stress_pa, 3),
         significant(own.stress_pa / own.strength_pa, 3),
         significant(own.strength_pa, 3),

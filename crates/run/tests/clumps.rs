@@ -2,6 +2,7 @@
 //! and bodies that are fed and removed as defined in the scene.
 
 mod again;
+mod bending;
 mod books;
 mod bounce;
 mod breakage;

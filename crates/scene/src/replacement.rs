@@ -63,7 +63,7 @@ plain_table! {
             .otherwise("not used");
         /// The mean stress that contacts exert on the clump (Love and Weber: the sum of the dyadic
         /// products of contact force and way from the centre, over the volume) has a principal
-        /// value of this magnitude.
+        /// value of this magnitude; or the stress of bending of a slender clump reaches it.
         principal_stress_pa: Option<f64> = quantity("principal_stress", &STRESS)
             .positive()
             .otherwise("not used");

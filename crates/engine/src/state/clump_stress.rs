@@ -32,8 +32,9 @@ fn principal(moment: &Matrix3<f64>) -> f64 {
     symmetric.symmetric_eigenvalues().amax()
 }
 
-/// Hits of a rigid clump whose mean stress (Love 1927, Weber 1966) would break its bonds. A hit
-/// lasts as long as something touches the clump; its measure is the stress times the volume, N m.
+/// Hits of a rigid clump whose mean stress (Love 1927, Weber 1966), or stress of bending if it is
+/// slender, would break its bonds. A hit lasts as long as something touches the clump; its measure
+/// is the stress times the volume, N m.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Hits {
     /// Largest value of the present hit, N m; 0 below that which breaks bonds.
@@ -42,6 +43,10 @@ pub struct Hits {
     pub over: u32,
     /// The largest value of these, N m.
     pub largest_n_m: f64,
+    /// Stress of bending that the modes of a slender clump can have followed in the present hit, and
+    /// the present stress, no larger than that, Pa.
+    followed_pa: f64,
+    pub(crate) bending_pa: f64,
 }
 
 impl Hits {
@@ -50,6 +55,8 @@ impl Hits {
     pub(crate) fn note(&mut self, moment_n_m: Option<&Matrix3<f64>>, breaks_from_n_m: f64) {
         let Some(moment_n_m) = moment_n_m else {
             self.end();
+            self.followed_pa = 0.0;
+            self.bending_pa = 0.0;
             return;
         };
         // The norm is an upper bound, and cheap.
@@ -57,6 +64,23 @@ impl Hits {
             return;
         }
         let value_n_m = principal(moment_n_m);
+        if value_n_m >= breaks_from_n_m {
+            self.now_n_m = self.now_n_m.max(value_n_m);
+        }
+    }
+
+    /// Records the stress of bending of a slender clump that is touched, Pa, and the rate at which
+    /// its modes follow it, Pa/s, over a step of `dt`, s.
+    pub(crate) fn note_bending(
+        &mut self,
+        [stress_pa, rate_pa_s]: [f64; 2],
+        dt: f64,
+        volume_m3: f64,
+        breaks_from_n_m: f64,
+    ) {
+        self.followed_pa += dt * rate_pa_s;
+        self.bending_pa = stress_pa.min(self.followed_pa);
+        let value_n_m = self.bending_pa * volume_m3;
         if value_n_m >= breaks_from_n_m {
             self.now_n_m = self.now_n_m.max(value_n_m);
         }

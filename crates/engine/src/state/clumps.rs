@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::bonds::Bonds;
 use super::clump_stress::Hits;
 use super::particles::{Motion, Particles, Pose, Wrench};
+use dem_physics::bending::{self, SlenderBody};
 use dem_physics::bond::failure::smallest_strength_pa;
 use dem_physics::rotation::{kinetic_j, spin_rad_s};
 use dem_physics::rotation::{numbers, rotation};
@@ -68,6 +69,32 @@ pub fn breaks_from_n_m(bonds: &Bonds, spheres: &[SubSphere]) -> f64 {
     strengths.fold(f64::INFINITY, f64::min) * sphere_volume_m3(spheres)
 }
 
+/// The sections of a clump of these spheres and bonds, with these principal moments, kg m2.
+/// None: it is not slender, or its bonds cannot break.
+pub fn slender_body(
+    bonds: &Bonds,
+    spheres: &[SubSphere],
+    moments_kg_m2: [f64; 3],
+) -> Option<SlenderBody> {
+    if breaks_from_n_m(bonds, spheres).is_infinite() {
+        return None;
+    }
+    let part = |sphere: &SubSphere| bending::Part {
+        place_m: sphere.place_m.into(),
+        radius_m: sphere.radius_m,
+        mass_kg: sphere.mass_kg,
+        inertia_kg_m2: sphere.inertia_kg_m2,
+    };
+    let parts: Vec<bending::Part> = spheres.iter().map(part).collect();
+    let bond = |at: usize| bending::Bond {
+        ends_m: bonds.ends[at].map(|end| spheres[end as usize].place_m.into()),
+        radius_m: bonds.radius_m(at),
+        axial_stiffness_n: bonds.normal(at) * bonds.initial_length_m(at),
+    };
+    let bonds: Vec<bending::Bond> = (0..bonds.len()).map(bond).collect();
+    SlenderBody::of(&parts, moments_kg_m2, &bonds)
+}
+
 /// Strengths that vary from bond to bond.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scatter {
@@ -115,6 +142,8 @@ pub struct Template {
     pub bonds_of_file: Arc<Vec<u32>>,
     /// Mean stress times volume from which its bonds would break, N m; infinite if they cannot.
     pub breaks_from_n_m: f64,
+    /// Its sections. None: it is not slender, or cannot break.
+    pub slender: Option<SlenderBody>,
     /// What its clumps land on, once it is known.
     #[serde(skip)]
     pub landing: KnownLanding,
@@ -410,6 +439,7 @@ impl Template {
             bonds_of_file: Arc::default(),
             landing: KnownLanding::default(),
             breaks_from_n_m: f64::INFINITY,
+            slender: None,
         }
     }
 

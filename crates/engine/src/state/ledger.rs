@@ -119,6 +119,10 @@ impl EnergyLedger {
     ) {
         let [px, py, pz, lx, ly, lz, ..] =
             momenta_of(mass_kg, place_m, velocity_m_s, own, self.about_m);
+        // What several bodies bring may cancel, but for rounding.
+        let lifted: [f64; 3] = [0, 1, 2].map(|k| gravity_m_s2[k] * (place_m[k] - self.about_m[k]));
+        let own_j = energy_j.abs() + (mass_kg * lifted.iter().sum::<f64>()).abs();
+        self.scale_j = self.scale_j.max(own_j);
         self.brought_j += sign * energy_j;
         self.mass_kg += sign * mass_kg;
         for (k, (p, l)) in [(px, lx), (py, ly), (pz, lz)].into_iter().enumerate() {

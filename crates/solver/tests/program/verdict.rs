@@ -323,3 +323,73 @@ fn each_of_two_spheres_takes_half_of_their_overlap() {
         assert!((deepest[1] / deepest[0] - 2.0).abs() < 1e-3, "{deepest:?}");
     }
 }
+
+/// A scene of the corpus, read.
+fn doubtful_text(name: &str) -> String {
+    let scenes = corpus("doubtful");
+    let path = scenes.iter().find(|path| path.ends_with(name)).unwrap();
+    std::fs::read_to_string(path).unwrap()
+}
+
+/// Once the ball has parted from the floor, and when it lies on it, the impact is over.
+#[test]
+fn an_impact_is_over_when_the_ball_has_parted_or_rests() {
+    let bench = Bench::new();
+    let text = doubtful_text("ends-in-an-impact.toml");
+    let end = "run.end_time = \"10.05 ms\"";
+    for other in [
+        "run.end_time = \"11 ms\"",
+        "run = { end_time = \"0.6 s\", gravity = [0, 0, -9.81] }",
+    ] {
+        let scene = bench.write("scene.toml", text.replace(end, other));
+        let summary = json(&bench, &scene, &["--json", "--quiet"]);
+        let warnings = strings(&summary["verdict"]["warnings"]);
+        assert_eq!(warnings, Vec::<String>::new(), "{other}");
+    }
+}
+
+/// A rigid rod that hits a pin becomes breakable by its stress of bending, and breaks as the rod
+/// that was bonded from the start.
+#[test]
+fn bending_replaces_a_slender_clump_in_time() {
+    let bench = Bench::new();
+    let text = doubtful_text("rod-on-a-pin.toml");
+    let bonded = text.replace("start_as = \"clump\"", "start_as = \"bonded\"");
+    let rule = "replacement.rod = { when = { principal_stress = \"1 MPa\" } }\nversion = 1";
+    let replaced = text.replacen("version = 1", rule, 1);
+    let broken = [bonded, replaced].map(|text| {
+        let scene = bench.write("scene.toml", text);
+        let summary = json(&bench, &scene, &["--json", "--quiet"]);
+        assert_eq!(summary["verdict"]["sound"], true, "{}", summary["verdict"]);
+        summary["broken_bonds"].as_u64().unwrap()
+    });
+    assert!(broken[0] >= 2, "{broken:?}");
+    assert_eq!(broken[0], broken[1]);
+}
+
+/// A ring of spheres is a row of bonds, and no packing with too few of them.
+#[test]
+fn a_bent_row_is_no_thin_packing() {
+    let bench = Bench::new();
+    let count = 24;
+    let place = |k: i32| {
+        let angle = f64::from(k) * std::f64::consts::TAU / f64::from(count);
+        let (sine, cosine) = angle.sin_cos();
+        format!("[{}, 0, {}, 0.005]", 0.036 * cosine, 0.0412 + 0.036 * sine)
+    };
+    let text = doubtful_text("rod-on-a-pin.toml");
+    let head = text.split("[bodies.rod]").next().unwrap();
+    let places: Vec<String> = (0..count).map(place).collect();
+    let mut bonds: Vec<String> = (1..count).map(|k| format!("[{}, {k}]", k - 1)).collect();
+    bonds.push(format!("[0, {}]", count - 1));
+    let ring = format!(
+        "{head}[bodies.ring]\nparticles = [{}]\nbond_list = [{}]\nmaterial = \"stone\"\n\
+         bonds = \"glue\"\nvelocity = [0, 0, -0.5]\n",
+        places.join(", "),
+        bonds.join(", ")
+    );
+    let scene = bench.write("ring.toml", ring);
+    let summary = json(&bench, &scene, &["--json", "--quiet"]);
+    let warnings = strings(&summary["verdict"]["warnings"]);
+    assert_eq!(warnings, Vec::<String>::new());
+}

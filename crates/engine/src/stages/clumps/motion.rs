@@ -1,7 +1,7 @@
 //! Rigid clumps in the time step: forces on their spheres act on the clumps, and the spheres move
 //! with them.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::stages::clusters::bytes::{ClusterUser, clusters_bytes};
 use crate::stages::stage::{Need, Stage};
@@ -11,6 +11,7 @@ use crate::state::clumps::{Clump, Clumps};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::search::buffers::NearBuffers;
 use crate::threads::{for_each, largest_of};
+use dem_physics::bending::{Beyond, SlenderBody};
 use dem_physics::rigid::rotation_vector;
 use dem_physics::rotation;
 use dem_physics::rotation::numbers;
@@ -237,6 +238,39 @@ impl<'a> Part<'a> {
     }
 }
 
+/// The contacts on the parts of a slender clump beyond its sections.
+struct Bending<'a> {
+    body: &'a SlenderBody,
+    to_principal: UnitQuaternion<f64>,
+    beyond: Beyond,
+}
+
+impl<'a> Bending<'a> {
+    fn of(clump: &Clump, template: &'a Template) -> Option<Self> {
+        template.slender.as_ref().map(|body| Self {
+            body,
+            to_principal: rotation_of(clump.turned).inverse(),
+            beyond: Beyond::default(),
+        })
+    }
+
+    /// Adds the force and moment on a sphere at this place relative to the centre.
+    fn add(&mut self, arm: &Vector3<f64>, on_it: [Vector3<f64>; 2]) {
+        let place = self.to_principal * arm;
+        let along = on_it.map(|v| self.to_principal * v);
+        self.body.add(&mut self.beyond, &place, along);
+    }
+
+    /// Records the bending of a clump under this force and torque.
+    fn note(&self, clump: &mut Clump, template: &Template, on_it: [Vector3<f64>; 2], dt: f64) {
+        let [force, torque] = on_it.map(|v| self.to_principal * v);
+        let turning = torque.component_div(&Vector3::from(template.moments_kg_m2));
+        let accelerations = [force / template.mass_kg, turning];
+        let stress = self.body.stress(accelerations, &self.beyond);
+        (clump.hits).note_bending(stress, dt, self.body.volume_m3, template.breaks_from_n_m);
+    }
+}
+
 /// Sums the forces on the spheres of each clump, and the energy that they take from its motion in a
 /// step of `dt`, s. Clears the wrenches of the spheres.
 pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
@@ -253,6 +287,7 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
             let template = &templates[clump.template as usize];
             let mut squeeze = Matrix3::zeros();
             let can_break = template.breaks_from_n_m.is_finite();
+            let mut bending = Bending::of(clump, template);
             let [from, to] = clump.near.map(|n| n as usize);
             for i in near[from..to].iter().map(|&i| i as usize - part.first) {
                 let wrench = &mut part.wrenches[i];
@@ -260,8 +295,12 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
                 let [tx, ty, tz, _] = wrench.torque_n_m;
                 let on_sphere = Vector3::new(fx, fy, fz);
                 let arm = part.poses[i].place() - centre;
+                let moment = Vector3::new(tx, ty, tz) + arm.cross(&on_sphere);
                 force += on_sphere;
-                torque += Vector3::new(tx, ty, tz) + arm.cross(&on_sphere);
+                torque += moment;
+                if let Some(bending) = &mut bending {
+                    bending.add(&arm, [on_sphere, moment]);
+                }
                 *wrench = Wrench::default();
                 if can_break && on_sphere != Vector3::zeros() {
                     let to_contact = part.poses[i].radius_m() * on_sphere.normalize();
@@ -271,6 +310,9 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
             if can_break {
                 let touched = (squeeze != Matrix3::zeros()).then_some(&squeeze);
                 clump.hits.note(touched, template.breaks_from_n_m);
+                if let (Some(bending), Some(_)) = (&bending, touched) {
+                    bending.note(clump, template, [force, torque], dt);
+                }
             }
             let spin = clump.spin_rad_s(template);
             let power = force.dot(&Vector3::from(clump.velocity_m_s)) + torque.dot(&spin);

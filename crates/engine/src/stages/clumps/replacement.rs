@@ -139,7 +139,8 @@ fn met(
         .map(|limit| squeeze.is_some_and(|squeeze| squeeze.largest_n > limit));
     let principal_stress = trigger.principal_stress.map(|stress| {
         let volume_m3 = stress.volume_m3_kg * state.clumps.template(clump).mass_kg;
-        squeeze.is_some_and(|squeeze| squeeze.principal_stress_pa(volume_m3) > stress.limit_pa)
+        let mean_pa = squeeze.map_or(0.0, |squeeze| squeeze.principal_stress_pa(volume_m3));
+        mean_pa.max(clump.hits.bending_pa) > stress.limit_pa
     });
     // A trigger time has passed for good: a restored clump needs another condition.
     let is_again = || {

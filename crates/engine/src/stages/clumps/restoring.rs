@@ -15,7 +15,7 @@ use crate::stages::ledger::totals::synchronous_motions;
 use crate::stages::population::change::apply_topology_change;
 use crate::state::State;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, Template, breaks_from_n_m, reach_m, sub_spheres};
+use crate::state::clumps::{Clump, Template, breaks_from_n_m, reach_m, slender_body, sub_spheres};
 use crate::state::clusters::fragments::{Fragment, fragment, mass_and_centre};
 use crate::state::events::PopulationEvent;
 use crate::state::events::Renumbering;
@@ -267,6 +267,7 @@ fn fragment_template(
         scatter: None,
         bonds_of_file: Arc::new((0..own.len() as u32).collect()),
         breaks_from_n_m: breaks_from_n_m(&own, &spheres),
+        slender: slender_body(&own, &spheres, properties.moments_kg_m2),
         bonds: Arc::new(own),
         spheres: Arc::new(spheres),
         landing: Default::default(),
