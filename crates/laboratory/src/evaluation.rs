@@ -1,5 +1,6 @@
 //! What the measured curve of each specimen says.
 
+use crate::clipped::clipped;
 use crate::curve::{Curve, FAILED};
 use crate::outlier::outlier;
 use crate::regions::Regions;
@@ -248,6 +249,12 @@ fn evaluate_one(measured: MeasuredSpecimen) -> EvaluatedSpecimen {
         false => regions.doubts_of_stiffness.clone(),
     };
     doubts.extend(regions.doubts.clone());
+    doubts.extend(clipped(
+        &curve.travel_m,
+        &curve.force_n,
+        &curve.lines,
+        regions.stiffness_n_m,
+    ));
     let loaded = regions.peak - regions.contact;
     if loaded < FEWEST_LOADED {
         doubts.push(format!(

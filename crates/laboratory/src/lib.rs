@@ -5,6 +5,7 @@
 //! [`MeasuredMaterial`], which scenes take as their target.
 
 mod area;
+mod clipped;
 mod confidence;
 mod curve;
 pub mod drop_weight;

@@ -235,3 +235,83 @@ fn two_peaks_cracks_outside_and_other_units_are_named() {
     assert_eq!(doubts[3], "it has the same rows as b");
     assert_eq!(doubts.len(), 4, "{doubts:?}");
 }
+
+/// Doubts about the load cell of a made test after its rows were changed.
+fn limits(made: &Made, change: &dyn Fn(usize, f64) -> f64) -> Vec<String> {
+    let mut one = specimen("a", made);
+    for (row, force) in one.curve.force_n.iter_mut().enumerate() {
+        *force = change(row, *force);
+    }
+    let doubts = evaluate(vec![one]).remove(0).doubts;
+    let is_limit = |doubt: &String| doubt.starts_with("its load cell is at its limit");
+    doubts.into_iter().filter(is_limit).collect()
+}
+
+/// Regression: the limit of the load cell was taken as the strength.
+#[test]
+fn a_load_cell_at_its_limit_is_named() {
+    let clipped = |limit_n: f64| move |_: usize, force: f64| force.min(limit_n);
+    assert_eq!(
+        limits(&USUAL, &clipped(30.0)),
+        [
+            "its load cell is at its limit: the force was rising and stays at exactly 30 N (lines 534 to 984) while the travel goes on by 1.847 mm; the strength is at least this: measure with a cell of larger range"
+        ]
+    );
+    let none = Made {
+        noise_n: 0.0,
+        drift_n: 0.0,
+        ..USUAL
+    };
+    for limit_n in [25.0, 30.0, 40.0] {
+        assert_eq!(limits(&USUAL, &clipped(limit_n)).len(), 1, "{limit_n}");
+        assert_eq!(limits(&none, &clipped(limit_n)).len(), 1, "{limit_n}");
+        let display = |_: usize, force: f64| (force.min(limit_n) / 0.1).round() * 0.1;
+        assert_eq!(limits(&USUAL, &display).len(), 1, "{limit_n}");
+    }
+}
+
+/// Yielding, round tops and the steps of a display are no limit.
+#[test]
+fn plateaus_of_the_material_are_no_limit_of_the_cell() {
+    let rounded = |step_n: f64| move |_: usize, force: f64| (force / step_n).round() * step_n;
+    for seed in 0..3 {
+        for bend in [0.3, 0.6, 0.8, 0.95, 1.0] {
+            for noise_n in [0.0, 0.1, 1.0] {
+                for rows in [200, 1500] {
+                    let made = Made {
+                        bend,
+                        noise_n,
+                        rows,
+                        seed,
+                        ..USUAL
+                    };
+                    for step_n in [0.01, 0.1, 1.0, 5.0] {
+                        let found = limits(&made, &rounded(step_n));
+                        assert!(found.is_empty(), "{made:?} {step_n}: {found:?}");
+                    }
+                }
+            }
+        }
+        // It yields at 40 N, as sharply as may be, with noise of some steps of the display.
+        let made = Made {
+            noise_n: 0.0,
+            drift_n: 0.0,
+            seed,
+            ..USUAL
+        };
+        let noisy = Made {
+            noise_n: 0.3,
+            ..made
+        }
+        .rows()
+        .1;
+        let smooth = made.rows().1;
+        for step_n in [1e-6, 0.1] {
+            let yields = |row: usize, force: f64| {
+                rounded(step_n)(row, force.min(40.0) + noisy[row] - smooth[row])
+            };
+            let found = limits(&made, &yields);
+            assert!(found.is_empty(), "{seed} {step_n}: {found:?}");
+        }
+    }
+}

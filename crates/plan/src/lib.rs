@@ -10,6 +10,7 @@ mod clumps;
 pub(crate) mod contacts;
 mod daughters;
 mod falls;
+mod file_units;
 mod forecast;
 pub mod groups;
 pub(crate) mod held;
@@ -137,6 +138,7 @@ pub fn plan(
     allow_any_step: bool,
 ) -> Result<Plan> {
     let inputs = inputs(scene, &read);
+    let of_units = file_units::notes(scene, &read);
     scale_to_sieves(scene, &mut read);
     let scene = &corrected(fitted(placed(scene, &read)?, &mut read)?, &read)?;
     let about: BTreeMap<String, About> = (read.iter())
@@ -163,7 +165,7 @@ pub fn plan(
     start(scene, &groups, &bodies, &mut state)?;
     state.loads = loads(scene, &groups, &state.supports)?;
     let of_masses = masses::notes(scene, &masses);
-    let mut notes = [scene.notes.clone(), quality.notes, of_masses].concat();
+    let mut notes = [scene.notes.clone(), of_units, quality.notes, of_masses].concat();
     state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
     state.population.by_daughters = vec![0; templates.len()];

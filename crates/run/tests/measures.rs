@@ -2,6 +2,7 @@
 
 mod bulk;
 mod contacts;
+mod heap_shapes;
 mod heaps;
 mod refused;
 mod swinging;

@@ -4,11 +4,13 @@
 //! from its axis of 3/10 R^2 and a covariance of the two of -1/40 H R^2. The first two give its
 //! slope independently of the ground and of mass missing uniformly over its surface: sqrt(8 var z /
 //! mean r^2). Spheres count with their own extent. The third shows whether there is a slope at all:
-//! a bed with a flat top has none. Several heaps, ridges and rings are no cone: they spread farther
-//! one way than the other, or leave the middle empty.
+//! a bed with a flat top has none. What is no cone has no slope, as [`shape`] finds it.
+
+mod shape;
 
 use nalgebra::Vector3;
 
+use self::shape::is_one_heap;
 use super::measurement::{Measurement, Planned, Settles};
 use super::probe::Probe;
 use super::spheres::{self, spheres};
@@ -22,13 +24,6 @@ const ROLLED_AWAY: f64 = 1.25;
 /// The covariance gives a smaller slope than the variances: by up to a fifth for the layers of a
 /// small cone. Any further difference means a flat top.
 const CONICAL: f64 = 0.8;
-
-/// Ratio of the spread of the mass one way to that the other from which it is no round heap: 2.8
-/// for two heaps that touch.
-const ROUND: f64 = 1.6;
-/// Part of the mass that lies within a quarter of the cone's radius from its axis, at least: 0.156
-/// of a cone, 0.104 of a flat disc, 0.03 to 0.07 of heaps in a triangle.
-const IN_MIDDLE: f64 = 0.1;
 
 pub(super) const MEASUREMENTS: &[Measurement] = &[Measurement {
     settles: Settles::Roughly,
@@ -54,7 +49,7 @@ fn missing(probe: &Probe) -> String {
     let (of, left) = (&probe.measure.of, probe.members.particles.len());
     if left >= FEWEST_IN_HEAP {
         format!(
-            "\"{of}\" is not one round heap, but several, a ridge or a ring; name the body of one heap in \"of\""
+            "\"{of}\" is not one round heap, but several, a ridge, a ring, a slope, a heap at a wall or in a corner, on a bed of its own spheres or with a flat top; name the body of one heap that stands free in \"of\", and give its bed another name"
         )
     } else {
         format!(
@@ -116,38 +111,15 @@ fn angle_of_repose_deg(spheres: &[spheres::Sphere], up: Vector3<f64>) -> f64 {
             (sx - x).hypot(sy - y) <= ROLLED_AWAY * radius_m
         });
         if heap.len() == before {
-            if !is_round(&heap, &moments) {
-                return f64::NAN;
-            }
             let slope = (8.0 * moments.upright_m2 / moments.across_m2).sqrt();
             let falling = -40.0 * moments.covariance_m3 / radius_m.powi(3);
+            if !is_one_heap(&heap, &moments, falling / slope) {
+                return f64::NAN;
+            }
             let fraction = (falling / (CONICAL * slope)).clamp(0.0, 1.0);
             return (fraction * slope).atan().to_degrees();
         }
     }
-}
-
-/// True if the mass spreads about equally far in all horizontal directions, and the middle is not
-/// empty, as far as this number of spheres shows it.
-fn is_round(heap: &[Sphere], moments: &Moments) -> bool {
-    let mass_kg: f64 = heap.iter().map(|sphere| sphere.mass_kg).sum();
-    let from_middle = |s: &Sphere| [0, 1].map(|k| s.across_m[k] - moments.middle_m[k]);
-    let mean = |of: &dyn Fn([f64; 2]) -> f64| {
-        let sum: f64 = heap.iter().map(|s| s.mass_kg * of(from_middle(s))).sum();
-        sum / mass_kg
-    };
-    let own_m2 = heap
-        .iter()
-        .map(|s| 0.2 * s.mass_kg * s.radius_m * s.radius_m);
-    let own_m2 = own_m2.sum::<f64>() / mass_kg;
-    let [xx, yy] = [0, 1].map(|k| own_m2 + mean(&|d| d[k] * d[k]));
-    let xy = mean(&|d| d[0] * d[1]);
-    let (half_sum, apart) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
-    let is_equal = half_sum + apart <= ROUND * ROUND * (half_sum - apart);
-    let quarter_m = 0.25 * (10.0 / 3.0 * moments.across_m2).sqrt();
-    let in_middle = mean(&|[x, y]| f64::from(u8::from(x.hypot(y) <= quarter_m)));
-    let scatter = (in_middle / heap.len() as f64).sqrt();
-    is_equal && in_middle + 2.0 * scatter >= IN_MIDDLE
 }
 
 /// The spheres, along axes of which one points up.

@@ -173,3 +173,28 @@ fn what_weighs_other_than_its_shape_is_noted_with_the_remedy() {
     );
     assert!(plan.warnings.is_empty());
 }
+
+#[test]
+fn large_spheres_of_a_file_without_a_unit_are_noted() {
+    let notes = |file: &str, radii: [f64; 2], more: &str| {
+        let text = format!(
+            "{HEAD}{MEETS}bodies.cake = {{ file = \"{file}\", material = \"stuff\", {more} }}\n"
+        );
+        let spheres = [[0.0, 0.0, 0.0, radii[0]], [0.0, 0.0, 9.0, radii[1]]];
+        let body = Body::from_spheres(&spheres, &[]).unwrap();
+        let bodies = BTreeMap::from([("cake".to_owned(), body)]);
+        plan(&scene(&text), bodies, 1, true).unwrap().notes
+    };
+    let is_said = |notes: Vec<String>| notes.iter().any(|note| note.contains("metres"));
+    assert!(notes("cake.csv", [2.0, 3.0], "").contains(
+        &"bodies.cake: the spheres of 'cake.csv' have radii of 2 to 3 m, as its numbers are metres: if they are millimetres, multiply them by 0.001, or set bodies.cake.sieve_size, which scales the body".to_owned()
+    ));
+    assert!(is_said(notes("cake.txt", [0.6, 0.6], "")));
+    assert!(!is_said(notes("cake.csv", [0.5, 0.4], "")));
+    assert!(!is_said(notes("cake.vtp", [2.0, 3.0], "")));
+    assert!(!is_said(notes(
+        "cake.csv",
+        [2.0, 3.0],
+        "sieve_size = \"20 mm\""
+    )));
+}

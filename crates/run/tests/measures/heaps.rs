@@ -11,7 +11,7 @@ use super::{Measured, assert_near};
 use dem_testing::Random;
 
 /// A sphere: centre and radius.
-type Sphere = (Vector3<f64>, f64);
+pub(super) type Sphere = (Vector3<f64>, f64);
 
 /// A cone of this height and slope on the plane z = 0.
 #[derive(Clone, Copy)]
@@ -39,40 +39,52 @@ impl Cone {
 /// Layers of spheres of radius 1: squares or hexagons, the layer height, and the number of layers
 /// after which they repeat.
 #[derive(Clone, Copy)]
-struct Lattice {
+pub(super) struct Lattice {
     hexagonal: bool,
     layer: f64,
     repeats: i32,
 }
 
-const CUBIC: Lattice = Lattice {
+pub(super) const CUBIC: Lattice = Lattice {
     hexagonal: false,
     layer: 2.0,
     repeats: 1,
 };
-const CENTRED: Lattice = Lattice {
+pub(super) const CENTRED: Lattice = Lattice {
     hexagonal: false,
     layer: SQRT_2,
     repeats: 2,
 };
-const HEXAGONAL: Lattice = Lattice {
+pub(super) const HEXAGONAL: Lattice = Lattice {
     hexagonal: true,
     layer: 1.632_993_161_855_452,
     repeats: 2,
 };
-const FACES: Lattice = Lattice {
+pub(super) const FACES: Lattice = Lattice {
     repeats: 3,
     ..HEXAGONAL
 };
 
-/// The spheres of a lattice within the cone, layer by layer. `shift`: offset of a sphere of the
-/// lowest layer from the axis; `turn_rad`: rotation of the lattice about it.
 fn regular(lattice: &Lattice, cone: &Cone, shift: [f64; 2], turn_rad: f64) -> Vec<Vec<Sphere>> {
+    let size = [cone.radius(), cone.height];
+    regular_in(lattice, size, &|s| cone.holds(s), shift, turn_rad)
+}
+
+/// The spheres of a lattice that a shape of this radius and height holds, layer by layer. `shift`:
+/// offset of a sphere of the lowest layer from the axis; `turn_rad`: rotation of the lattice about
+/// it.
+pub(super) fn regular_in(
+    lattice: &Lattice,
+    [radius, height]: [f64; 2],
+    holds: &dyn Fn(&Sphere) -> bool,
+    shift: [f64; 2],
+    turn_rad: f64,
+) -> Vec<Vec<Sphere>> {
     let shift = Vector3::new(shift[0], shift[1], 1.0);
     let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * turn_rad);
-    let reach = cone.radius() as i32 + 4;
+    let reach = radius as i32 + 4;
     let mut layers = Vec::new();
-    for k in 0..=((cone.height / lattice.layer) as i32) {
+    for k in 0..=((height / lattice.layer) as i32) {
         let mut spheres = Vec::new();
         let f = f64::from(k % lattice.repeats);
         for i in -reach..=reach {
@@ -84,7 +96,7 @@ fn regular(lattice: &Lattice, cone: &Cone, shift: [f64; 2], turn_rad: f64) -> Ve
                     (2.0 * i + f, 2.0 * j + f)
                 };
                 let place = turn * (Vector3::new(x, y, lattice.layer * f64::from(k)) + shift);
-                if cone.holds(&(place, 1.0)) {
+                if holds(&(place, 1.0)) {
                     spheres.push((place, 1.0));
                 }
             }
@@ -115,9 +127,18 @@ fn regular_anywhere(
     }
 }
 
-/// Spheres dropped one by one until 600 in succession do not fit into the cone, with radii from
-/// `1 - spread` to `1 + spread`.
 fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
+    dropped_in(cone.radius(), &|s| cone.holds(s), spread, random)
+}
+
+/// Spheres dropped one by one until 600 in succession do not fit into a shape of this radius, with
+/// radii from `1 - spread` to `1 + spread`.
+pub(super) fn dropped_in(
+    reach: f64,
+    holds: &dyn Fn(&Sphere) -> bool,
+    spread: f64,
+    random: &mut Random,
+) -> Vec<Sphere> {
     let cell = 2.0 * (1.0 + spread);
     let column = |x: f64| (x / cell).floor() as i32;
     let mut cells: BTreeMap<(i32, i32), Vec<Sphere>> = BTreeMap::new();
@@ -127,7 +148,7 @@ fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
         let radius = random.within(1.0 - spread, 1.0 + spread);
         let mut lowest: Option<Sphere> = None;
         for _ in 0..8 {
-            let [x, y] = [0; 2].map(|_| random.within(-cone.radius(), cone.radius()));
+            let [x, y] = [0; 2].map(|_| random.within(-reach, reach));
             let (i, j) = (column(x), column(y));
             let near = (-1..=1).flat_map(|a| (-1..=1).map(move |b| (i + a, j + b)));
             let below = near.filter_map(|cell| cells.get(&cell)).flatten();
@@ -141,7 +162,7 @@ fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
                 }
             });
             let sphere = (Vector3::new(x, y, z), radius);
-            if cone.holds(&sphere) && lowest.is_none_or(|(place, _)| z < place.z) {
+            if holds(&sphere) && lowest.is_none_or(|(place, _)| z < place.z) {
                 lowest = Some(sphere);
             }
         }
@@ -159,7 +180,7 @@ fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
 }
 
 /// The angle of repose of these spheres, degrees, under this gravity.
-fn angle_deg(spheres: &[Sphere], gravity: [f64; 3]) -> f64 {
+pub(super) fn angle_deg(spheres: &[Sphere], gravity: [f64; 3]) -> f64 {
     let mut particles = String::new();
     for (place, radius) in spheres {
         let [x, y, z] = (*place).into();
@@ -184,7 +205,7 @@ measures.slope = {{ of = \"heap\", quantity = \"angle_of_repose\", reference = \
     value
 }
 
-const DOWN: [f64; 3] = [0.0, 0.0, -9.81];
+pub(super) const DOWN: [f64; 3] = [0.0, 0.0, -9.81];
 
 #[test]
 fn lattices_cut_to_a_cone_have_its_slope() {
