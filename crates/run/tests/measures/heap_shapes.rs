@@ -42,10 +42,10 @@ fn layers(spheres: &[Sphere]) -> f64 {
 fn random_cones_are_heaps_and_have_their_slope() {
     let mut random = Random(41);
     let mut counts = [0; 3];
-    while counts.iter().sum::<usize>() < 60 {
+    while counts.iter().any(|count| *count < 12) {
         let degrees = random.within(10.0, 40.0);
         let slope = degrees.to_radians().tan();
-        let radius = random.within(6.0, 14.0) / slope.cbrt();
+        let radius = random.within(6.0, 26.0) / slope.cbrt();
         let cone = |x: f64, y: f64| slope * (radius - x.hypot(y));
         let mut spheres = under(&cone, slope, [radius, slope * radius], &mut random);
         if spheres.len() < 50 || layers(&spheres) < 3.3 {
@@ -65,7 +65,6 @@ fn random_cones_are_heaps_and_have_their_slope() {
         let angle = angle_deg(&spheres, (turn * Vector3::from(DOWN)).into());
         assert!((angle - degrees).abs() <= most, "{angle} {degrees} {most}");
     }
-    assert!(counts.iter().all(|count| *count >= 10), "{counts:?}");
 }
 
 /// Regression: a quarter of a cone of 30 degrees had 36 degrees, a ridge 16, a slope of 16 degrees

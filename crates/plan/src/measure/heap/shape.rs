@@ -13,9 +13,9 @@ use super::{Moments, Sphere};
 const IN_MIDDLE: f64 = 0.1;
 
 /// Largest harmonic of the mass: two corners of it are a ridge, three a slope or three heaps, four
-/// a square. Cones have up to 0.03 with more than 800 spheres and 0.15 with 50; heaps of scenes
-/// 0.11 with 1,000 and 0.22 with 60. Ridges of which a quarter is straight have 0.28, three heaps that
-/// touch 0.43, squares 0.4, half a cone 0.5.
+/// a square. Cones have up to 0.03 with more than 800 spheres and 0.15 with 50, heaps of scenes
+/// 0.11 with 1,000 and 0.22 with 60. Ridges of which a quarter is straight have 0.28, three heaps
+/// that touch 0.43, squares 0.4, half a cone 0.5.
 const UNEVEN: f64 = 0.2;
 /// Largest harmonic of the height: one side higher than the other, or a crest. Cones have up to
 /// 0.04 with more than 800 spheres and 0.2 with 50, heaps of scenes 0.11 with 300. A quarter of a
