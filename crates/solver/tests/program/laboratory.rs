@@ -356,3 +356,35 @@ fn a_specimen_of_five_spheres_across_is_not_coarse() {
     assert_eq!(said_of(4.9, false), [1, 0]);
     assert_eq!(said_of(10.2, true), [0, 0]);
 }
+
+/// Answers of a test of strength are those at its largest load: what exceeds the laws among the
+/// pieces later is a note, and a doubt only before.
+#[test]
+fn what_exceeds_the_laws_after_the_largest_load_is_a_note() {
+    let body = format!("disc={}", root().join("data/bodies/disc.vtp").display());
+    let of = |modulus_mpa: u32| {
+        let bench = Bench::new();
+        let set = format!("materials.cake.shear_modulus=\"{modulus_mpa} MPa\"");
+        let once = ["--set", "test.rate_check=false", "--set", "test.periods=10"];
+        let mut options = vec!["--body", &body, "--set", &set, "--json", "--quiet"];
+        options.extend(once);
+        let summary = summary(&bench.good(&scene_of_data("brazilian-disc.toml"), &options));
+        let said = |of: &Value| {
+            of.as_array()
+                .unwrap()
+                .iter()
+                .map(Value::to_string)
+                .collect()
+        };
+        let warnings: Vec<String> = said(&summary["verdict"]["warnings"]);
+        let notes: Vec<String> = said(&summary["notes"]);
+        (warnings, notes)
+    };
+    let is_pressed = |said: &String| said.contains("a contact pressed a sphere in");
+    let (warnings, notes) = of(30);
+    assert!(!warnings.iter().any(is_pressed), "{warnings:?}");
+    let later = "after the largest load, whose answers this does not touch: a bond was strained";
+    assert!(notes.iter().any(|note| note.contains(later)), "{notes:?}");
+    let (warnings, _) = of(2);
+    assert!(warnings.iter().any(is_pressed), "{warnings:?}");
+}
