@@ -1,5 +1,7 @@
 //! Load cells at their limit.
 
+use dem_io::units::significant;
+
 /// Fewest rows at the largest force that show a limit.
 const FEWEST_ROWS: usize = 5;
 /// Smallest rise before the limit, over as many rows as lie at it, in steps of the display. At a
@@ -52,7 +54,8 @@ pub(crate) fn clipped(
     is_clipped.then(|| {
         let [one, other] = [lines[first], lines[end - 1]];
         format!(
-            "its load cell is at its limit: the force was rising and stays at exactly {most_n} N (lines {} to {}) while the travel goes on by {:.3} mm; the strength is at least this: measure with a cell of larger range",
+            "its load cell is at its limit: the force was rising and stays at exactly {} N (lines {} to {}) while the travel goes on by {:.3} mm; the strength is at least this: measure with a cell of larger range",
+            significant(most_n, 5),
             one.min(other),
             one.max(other),
             1e3 * goes_on_m

@@ -125,13 +125,17 @@ impl TestResult {
     /// rate. A figure with a closed form is compared over it, as the stress of a disc is that at
     /// the last load that was looked at before a bond broke, which differs by up to a tenth.
     pub fn compare(&mut self, fast: &Self) {
-        let relative = |figure: &Figure| match (figure.theory_is, figure.theory) {
-            (Some(Source::ClosedForm), Some(theory)) => figure.value / theory.abs(),
-            _ => figure.value,
+        let theory = |figure: &Figure| {
+            let is_closed = figure.theory_is == Some(Source::ClosedForm);
+            figure.theory.filter(|_| is_closed)
         };
         let compared = |figure: &Figure| {
-            let before = relative(fast.figures.iter().find(|one| one.name == figure.name)?);
-            let change = (relative(figure) - before) / before.abs();
+            let other = fast.figures.iter().find(|one| one.name == figure.name)?;
+            let [slow, before] = match (theory(figure), theory(other)) {
+                (Some(own), Some(others)) => [figure.value / own.abs(), other.value / others.abs()],
+                _ => [figure.value, other.value],
+            };
+            let change = (slow - before) / before.abs();
             change
                 .is_finite()
                 .then(|| Figure::new(&figure.name, change, "", None))

@@ -110,10 +110,14 @@ impl Crossing {
 }
 
 impl SlenderBody {
-    /// The body of these parts and bonds with these principal moments of inertia, ascending, kg m2.
-    /// None: it is not slender, or no bond crosses one of the sections.
-    pub fn of(parts: &[Part], moments_kg_m2: [f64; 3], bonds: &[Bond]) -> Option<Self> {
-        let mass_kg: f64 = parts.iter().map(|part| part.mass_kg).sum();
+    /// The body of these parts and bonds with this mass, kg, and these principal moments of inertia,
+    /// ascending, kg m2, to which the masses and moments of the parts are scaled. None: it is not
+    /// slender, or no bond crosses one of the sections.
+    pub fn of(
+        parts: &[Part],
+        (mass_kg, moments_kg_m2): (f64, [f64; 3]),
+        bonds: &[Bond],
+    ) -> Option<Self> {
         let [i0, i1, i2] = moments_kg_m2;
         // That of a uniform bar; its axis is that of the smallest moment, x.
         let length_m = (6.0 * (i1 + i2 - i0) / mass_kg).sqrt();
@@ -124,6 +128,12 @@ impl SlenderBody {
         if !is_whole || length_m < SLENDER * thickest_m {
             return None;
         }
+        let of_mass = mass_kg / parts.iter().map(|part| part.mass_kg).sum::<f64>();
+        let own = parts.iter().map(|part| {
+            let [x, y, z] = part.place_m.into();
+            part.mass_kg * (2.0 * x * x + y * y + z * z) + 2.0 * part.inertia_kg_m2
+        });
+        let of_inertia = (i1 + i2) / own.sum::<f64>();
         let section = |k: usize| {
             let crossing = &crossings[k];
             let [about_1, about_2] = crossing.bending;
@@ -134,7 +144,10 @@ impl SlenderBody {
                 about_2[0] / about_2[1],
             );
             let rate_1_s = MODES[k] * rigidity.sqrt() / length_m.powi(2);
-            Section::of(parts, SECTIONS[k] * length_m, moduli, rate_1_s)
+            let mut section = Section::of(parts, SECTIONS[k] * length_m, moduli, rate_1_s);
+            section.moment_kg_m *= of_mass;
+            section.inertia_kg_m2 *= of_inertia;
+            section
         };
         let volume_m3 = |part: &Part| 4.0 / 3.0 * PI * part.radius_m.powi(3);
         Some(Self {

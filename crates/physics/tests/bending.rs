@@ -36,7 +36,7 @@ fn row(count: usize) -> (Vec<Part>, [f64; 3], Vec<Bond>) {
 /// Largest stress in a row under a force at a place, Pa, and the rate at which modes follow it.
 fn stress(count: usize, force: Vector3<f64>, at_m: Vector3<f64>) -> [f64; 2] {
     let (parts, moments, bonds) = row(count);
-    let body = SlenderBody::of(&parts, moments, &bonds).unwrap();
+    let body = SlenderBody::of(&parts, (parts.len() as f64 * MASS_KG, moments), &bonds).unwrap();
     let torque = at_m.cross(&force);
     let turning = torque.component_div(&Vector3::from(moments));
     let linear = force / (count as f64 * MASS_KG);
@@ -117,12 +117,35 @@ fn modes_follow_a_stress_as_those_of_a_free_bar() {
 fn only_slender_bodies_have_sections() {
     let is_slender = |count| {
         let (parts, moments, bonds) = row(count);
-        SlenderBody::of(&parts, moments, &bonds).is_some()
+        SlenderBody::of(&parts, (parts.len() as f64 * MASS_KG, moments), &bonds).is_some()
     };
     assert!(!is_slender(3));
     assert!(!is_slender(4));
     assert!(is_slender(6));
     let (parts, moments, mut bonds) = row(30);
     bonds.remove(14);
-    assert!(SlenderBody::of(&parts, moments, &bonds).is_none());
+    assert!(SlenderBody::of(&parts, (parts.len() as f64 * MASS_KG, moments), &bonds).is_none());
+}
+
+/// A body whose mass and moments are not the sums of its parts, as those of a union of spheres are,
+/// bends alike under mirrored forces, and only by what it weighs.
+#[test]
+fn masses_of_parts_are_scaled_to_those_of_the_body() {
+    let (parts, moments, bonds) = row(30);
+    let of = |scale: f64, end: f64| {
+        let mass_kg = scale * 30.0 * MASS_KG;
+        let moments = moments.map(|moment| 0.9 * scale * moment);
+        let body = SlenderBody::of(&parts, (mass_kg, moments), &bonds).unwrap();
+        let at_m = Vector3::new(end * 14.5 * APART_M, 0.0, -RADIUS_M);
+        let torque = at_m.cross(&Vector3::z());
+        let mut beyond = Beyond::default();
+        body.add(&mut beyond, &at_m, [Vector3::z(), torque]);
+        let turning = torque.component_div(&Vector3::from(moments));
+        body.stress([Vector3::z() / mass_kg, turning], &beyond)[0]
+    };
+    for scale in [1.0, 0.7] {
+        let [left, right] = [-1.0, 1.0].map(|end| of(scale, end));
+        assert!((left / right - 1.0).abs() < 1e-9, "{left} {right}");
+        assert!((left / of(1.0, -1.0) - 1.0).abs() < 1e-9);
+    }
 }

@@ -176,7 +176,11 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
             .position(|material| *material == entry.material)
             .unwrap_or(0) as u8,
         breaks_from_n_m: breaks_from_n_m(&bonds, &spheres),
-        slender: slender_body(&bonds, &spheres, properties.moments_kg_m2),
+        slender: slender_body(
+            &bonds,
+            &spheres,
+            (properties.mass_kg, properties.moments_kg_m2),
+        ),
         bonds: Arc::new(bonds),
         file_number: Arc::new(file_number),
         ids: Vec::new(),

@@ -21,7 +21,10 @@ pub(super) fn notes(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<String>
             return None;
         };
         let file = path.file_name()?.to_string_lossy().into_owned();
-        let says_unit = file == "-" || path.extension().is_some_and(|of| of == "vtp");
+        let says_unit = file == "-"
+            || path
+                .extension()
+                .is_some_and(|of| of.eq_ignore_ascii_case("vtp"));
         let ends = [f64::INFINITY, 0.0];
         let [least_m, most_m] = (body.radii.iter()).fold(ends, |[least, most], radius| {
             [least.min(*radius), most.max(*radius)]

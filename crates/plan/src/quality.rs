@@ -76,8 +76,9 @@ pub(super) fn of_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Quality
             (quality.warnings).extend(seen.map(|text| format!("{named}: {text}")));
         }
         if let Some(kind) = bond_kind(scene, name) {
-            let seen = unbreakable_row(kind, body).into_iter();
-            let seen = seen.chain(thick_bond(kind, body));
+            let can_be_hit = !scene.contacts.is_empty();
+            let seen = unbreakable_row(kind, body).filter(|_| can_be_hit);
+            let seen = seen.into_iter().chain(thick_bond(kind, body));
             (quality.warnings).extend(seen.map(|text| format!("{named}: {text}")));
         }
         let coarse = match calibrated(scene, name, body) {
@@ -116,7 +117,7 @@ fn unbreakable_row(kind: &BondKind, body: &Body) -> Option<String> {
         || failure.compressive_strength_pa.is_some();
     let is_long = body.radii.len() >= FEWEST && is_row(body);
     (is_long && failure.von_mises_strength_pa.is_some() && !counts_bending).then(|| {
-        "it is a single row of bonds, and equivalent_stress = \"forces-only\" does not break a bond that is only bent or twisted, so that it stays whole however far it is bent; write equivalent_stress = \"tensile-edge\", or tensile_strength".to_owned()
+        "it is a single row of bonds, and with equivalent_stress = \"forces-only\" bending and torsion alone do not break them; write equivalent_stress = \"tensile-edge\", or tensile_strength".to_owned()
     })
 }
 
@@ -134,7 +135,7 @@ fn thick_bond(kind: &BondKind, body: &Body) -> Option<String> {
     let most = radii.into_iter().fold(0.0, f64::max);
     (most > THICK).then(|| {
         format!(
-            "a bond is {} times as thick as the smaller of its spheres, and stiffer in bending by the fourth power of this: check {place}, {THICK} or less is expected",
+            "a bond is {} times as thick as the smaller of its spheres, and its bending stiffness goes with the fourth power of this: check {place}; {THICK} or less is expected",
             significant(most, 3)
         )
     })

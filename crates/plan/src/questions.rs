@@ -332,9 +332,13 @@ fn braked_impacts(scene: &Scene) -> Option<String> {
     let moves_freely = scene.test.is_none() && scene.supports.is_empty();
     let is_run = scene.run.integrator != Integrator::Static;
     let hits = moves_freely && is_run && !scene.contacts.is_empty();
+    let instead = match scene.bonds.is_empty() {
+        true => "remove it",
+        false => "damp the bonds instead",
+    };
     (hits && damping > 0.0).then(|| {
         format!(
-            "run.local_damping = {damping} also brakes bodies while they touch a wall: they rebound less than the restitution of [contacts] says, and slide less far; for impacts, damp the bonds instead"
+            "run.local_damping = {damping} also brakes bodies while they touch a wall: they rebound less than the restitution of [contacts] says, and slide less far; for impacts, {instead}"
         )
     })
 }

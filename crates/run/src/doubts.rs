@@ -11,7 +11,6 @@ use dem_scene::{Scene, StartAs};
 use nalgebra::Vector3;
 
 use self::still_flying::{Flying, QUIET, still_flying};
-use super::changes::last_change_s;
 use super::monitors::{Extreme, Monitors, stand_n};
 use super::taken_in::needed_j_kg;
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
@@ -20,6 +19,7 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments::Fragment;
 use dem_engine::state::rules::Outlet;
+use dem_engine::state::walls::Wall;
 
 /// Fraction of the run at its end in which breaking bonds show that breakage is not over.
 const LATE: f64 = 0.05;
@@ -43,14 +43,13 @@ impl Monitors {
         flying: Option<&Flying>,
         is_stopped: bool,
     ) -> Vec<String> {
-        let mut warnings = self.beyond_the_laws();
         if is_stopped {
-            return warnings;
+            return beyond(self.extremes());
         }
+        let mut warnings = self.beyond_the_laws();
         warnings.extend(self.untouched(state, scene, bodies));
         if scene.test.is_none() {
             warnings.extend(self.still_breaking(state, scene));
-            warnings.extend(self.ends_in_an_impact(state));
         }
         warnings.extend(self.all_fell_past(state));
         warnings.extend(
@@ -129,7 +128,7 @@ impl Monitors {
         let later = after.into_iter().filter(|said| !before.contains(said));
         later
             .map(|said| {
-                format!("after the largest load, whose answers this does not touch: {said}")
+                format!("after the largest load, so that the results of the test do not depend on it: {said}")
             })
             .collect()
     }
@@ -218,11 +217,14 @@ impl Monitors {
         })
     }
 
-    /// Warning that something hits a standing wall at the end. Not while anything is moved, loaded
-    /// or fed: such a process may end at any moment.
-    fn ends_in_an_impact(&self, state: &State) -> Option<String> {
-        let is_driven = last_change_s(state) >= (1.0 - LATE) * state.time_s;
-        if is_driven || !state.model.rules.inlets.is_empty() {
+    /// Warning that something hits a standing wall at the end time. Not where walls, loads or
+    /// supports press, or inlets feed: such a process may end at any moment.
+    pub(super) fn ends_in_an_impact(&self, state: &State) -> Option<String> {
+        let presses = !state.loads.is_empty() || !state.supports.is_empty();
+        if presses
+            || state.walls.iter().any(Wall::does_work)
+            || !state.model.rules.inlets.is_empty()
+        {
             return None;
         }
         let [of_largest, of_weight] = UNDER_IMPACT;
@@ -243,7 +245,9 @@ impl Monitors {
     fn all_fell_past(&self, state: &State) -> Option<String> {
         let is_fed = state.population.inlets.iter().any(|come| come.bodies > 0);
         let misses_all = !state.walls.is_empty() && self.has_touched_no_wall();
-        (is_fed && misses_all && !self.touched.is_empty()).then(|| {
+        // What is held may be the target of what is fed.
+        let is_held = !state.supports.is_empty();
+        (is_fed && misses_all && !is_held && !self.touched.is_empty()).then(|| {
             "nothing that the inlets fed has touched a wall; check the places of walls and inlets, or set run.end_time later".to_owned()
         })
     }

@@ -68,6 +68,7 @@ impl Run<'_> {
                 (&self.progress.last_tenth, |n| monitors.has_touched_wall(n));
             warnings.extend(last_tenth.short_servos(&self.state, touched));
             if ended.by == AT_END_TIME {
+                warnings.extend(monitors.ends_in_an_impact(&self.state));
                 warnings.extend(last_tenth.moving(&self.state, bodies, &self.probes));
             }
         }

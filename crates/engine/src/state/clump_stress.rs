@@ -43,9 +43,7 @@ pub struct Hits {
     pub over: u32,
     /// The largest value of these, N m.
     pub largest_n_m: f64,
-    /// Stress of bending that the modes of a slender clump can have followed in the present hit, and
-    /// the present stress, no larger than that, Pa.
-    followed_pa: f64,
+    /// Stress of bending of a slender clump, Pa: in a short hit that which its modes have followed.
     pub(crate) bending_pa: f64,
 }
 
@@ -55,7 +53,6 @@ impl Hits {
     pub(crate) fn note(&mut self, moment_n_m: Option<&Matrix3<f64>>, breaks_from_n_m: f64) {
         let Some(moment_n_m) = moment_n_m else {
             self.end();
-            self.followed_pa = 0.0;
             self.bending_pa = 0.0;
             return;
         };
@@ -78,8 +75,8 @@ impl Hits {
         volume_m3: f64,
         breaks_from_n_m: f64,
     ) {
-        self.followed_pa += dt * rate_pa_s;
-        self.bending_pa = stress_pa.min(self.followed_pa);
+        // A clump at rest on others follows the next knock from its static stress on.
+        self.bending_pa = stress_pa.min(self.bending_pa + dt * rate_pa_s);
         let value_n_m = self.bending_pa * volume_m3;
         if value_n_m >= breaks_from_n_m {
             self.now_n_m = self.now_n_m.max(value_n_m);

@@ -11,7 +11,7 @@ use super::bonds::Bonds;
 use super::clump_stress::Hits;
 use super::particles::{Motion, Particles, Pose, Wrench};
 use dem_physics::bending::{self, SlenderBody};
-use dem_physics::bond::failure::smallest_strength_pa;
+use dem_physics::bond::failure::{Criteria, smallest_strength_pa};
 use dem_physics::rotation::{kinetic_j, spin_rad_s};
 use dem_physics::rotation::{numbers, rotation};
 use dem_physics::shape::inertia::MassProperties;
@@ -69,14 +69,15 @@ pub fn breaks_from_n_m(bonds: &Bonds, spheres: &[SubSphere]) -> f64 {
     strengths.fold(f64::INFINITY, f64::min) * sphere_volume_m3(spheres)
 }
 
-/// The sections of a clump of these spheres and bonds, with these principal moments, kg m2.
-/// None: it is not slender, or its bonds cannot break.
+/// The sections of a clump of these spheres and bonds, with this mass, kg, and these principal
+/// moments, kg m2. None: it is not slender, or bending does not break its bonds.
 pub fn slender_body(
     bonds: &Bonds,
     spheres: &[SubSphere],
-    moments_kg_m2: [f64; 3],
+    (mass_kg, moments_kg_m2): (f64, [f64; 3]),
 ) -> Option<SlenderBody> {
-    if breaks_from_n_m(bonds, spheres).is_infinite() {
+    let mut rules = bonds.rule_runs.iter().map(|(_, rule)| &bonds.rules[*rule]);
+    if !rules.any(|rule| rule.criteria.as_ref().is_some_and(Criteria::count_bending)) {
         return None;
     }
     let part = |sphere: &SubSphere| bending::Part {
@@ -92,7 +93,7 @@ pub fn slender_body(
         axial_stiffness_n: bonds.normal(at) * bonds.initial_length_m(at),
     };
     let bonds: Vec<bending::Bond> = (0..bonds.len()).map(bond).collect();
-    SlenderBody::of(&parts, moments_kg_m2, &bonds)
+    SlenderBody::of(&parts, (mass_kg, moments_kg_m2), &bonds)
 }
 
 /// Strengths that vary from bond to bond.

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::walls::Wall;
 
+/// Part of the energy that a body brings that many such bodies do not reach by rounding.
+const ROUNDED: f64 = 1e-9;
+
 /// Energy and momentum supplied and removed since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyLedger {
@@ -122,7 +125,7 @@ impl EnergyLedger {
         // What several bodies bring may cancel, but for rounding.
         let lifted: [f64; 3] = [0, 1, 2].map(|k| gravity_m_s2[k] * (place_m[k] - self.about_m[k]));
         let own_j = energy_j.abs() + (mass_kg * lifted.iter().sum::<f64>()).abs();
-        self.scale_j = self.scale_j.max(own_j);
+        self.scale_j = self.scale_j.max(ROUNDED * own_j);
         self.brought_j += sign * energy_j;
         self.mass_kg += sign * mass_kg;
         for (k, (p, l)) in [(px, lx), (py, ly), (pz, lz)].into_iter().enumerate() {

@@ -35,6 +35,18 @@ impl Criteria {
     pub fn is_frictional(&self) -> bool {
         self.cohesion_pa.is_finite()
     }
+
+    /// Whether bending alone can break a bond.
+    pub fn count_bending(&self) -> bool {
+        let at_edges = [
+            self.tensile_strength_pa,
+            self.compressive_strength_pa,
+            self.cohesion_pa,
+        ];
+        let by_forces_only = self.equivalent_stress == EquivalentStress::ForcesOnly;
+        at_edges.iter().any(|strength_pa| strength_pa.is_finite())
+            || (self.von_mises_strength_pa.is_finite() && !by_forces_only)
+    }
 }
 
 /// Readings of Platzer 2022, eq. 13, and of "the normal stress component is only considered under

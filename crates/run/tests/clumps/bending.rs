@@ -56,6 +56,7 @@ fn a_rigid_row_counts_as_broken_where_the_bonded_one_breaks() {
         (60, 0.25, 10.0),
     ] {
         let [mut whole_m_s, mut broken_m_s] = [0.1, 10.0];
+        assert!(!breaks(case, "bonded", whole_m_s) && breaks(case, "bonded", broken_m_s));
         while broken_m_s > 1.02 * whole_m_s {
             let between_m_s = f64::sqrt(whole_m_s * broken_m_s);
             if breaks(case, "bonded", between_m_s) {

@@ -393,3 +393,50 @@ fn a_bent_row_is_no_thin_packing() {
     let warnings = strings(&summary["verdict"]["warnings"]);
     assert_eq!(warnings, Vec::<String>::new());
 }
+
+/// A constant load on a ball at rest, and a lid that was moved onto it and then held, are no
+/// impact, however large beside the weight; nor is an end that a measure asked for.
+#[test]
+fn what_presses_at_rest_is_no_impact() {
+    let bench = Bench::new();
+    let text = doubtful_text("ends-in-an-impact.toml");
+    let ball = "particles = [[0, 0, 0.02, 0.01]]";
+    let lying = text.replace(ball, "particles = [[0, 0, 0.01, 0.01]]");
+    let lying = lying.replace("velocity = [0, 0, -1]", "velocity = [0, 0, 0]");
+    let lying = lying.replace("10.05 ms", "60 ms");
+    let loaded = format!(
+        "{lying}loads.push = {{ group = \"ball\", force = [0, 0, -1], ramp = \"5 ms\" }}\n"
+    );
+    let lid = format!(
+        "{lying}walls.lid = {{ plane = {{ point = [0, 0, 0.0201], normal = [0, 0, -1] }}, material = \"stone\", \
+         displacement = [0, 0, \"-0.3 mm\"], ramp = \"20 ms\" }}\n"
+    );
+    let measured = format!(
+        "{}measures.push = {{ of = \"floor\", quantity = \"force_z\", statistic = \"smallest\" }}\n\
+         measures.overlap = {{ of = \"floor\", quantity = \"force\", end_run_above = \"5 N\" }}\n\
+         output.series = \"10 us\"\n",
+        text.replace("10.05 ms", "20 ms")
+    );
+    for scene in [loaded, lid, measured] {
+        let scene = bench.write("scene.toml", scene);
+        let summary = json(&bench, &scene, &["--json", "--quiet"]);
+        let warnings = strings(&summary["verdict"]["warnings"]);
+        let is_impact = |said: &String| said.contains("in the middle of an impact");
+        assert!(!warnings.iter().any(is_impact), "{warnings:?}");
+    }
+}
+
+/// Bonds may be up to twice as thick as their smaller sphere.
+#[test]
+fn bonds_more_than_twice_as_thick_as_spheres_are_doubted() {
+    let bench = Bench::new();
+    let text = doubtful_text("bonds-too-thick.toml");
+    for (factor, is_said) in [("2.0", false), ("2.1", true)] {
+        let scene = text.replace("radius_factor = 20,", &format!("radius_factor = {factor},"));
+        let scene = bench.write("scene.toml", scene);
+        let summary = json(&bench, &scene, &["--json", "--quiet"]);
+        let warnings = strings(&summary["verdict"]["warnings"]);
+        let said = warnings.iter().any(|said| said.contains("as thick as"));
+        assert_eq!(said, is_said, "{factor}: {warnings:?}");
+    }
+}

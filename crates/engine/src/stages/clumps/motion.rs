@@ -246,12 +246,12 @@ struct Bending<'a> {
 }
 
 impl<'a> Bending<'a> {
-    fn of(clump: &Clump, template: &'a Template) -> Option<Self> {
-        template.slender.as_ref().map(|body| Self {
+    fn of(clump: &Clump, body: &'a SlenderBody) -> Self {
+        Self {
             body,
             to_principal: rotation_of(clump.turned).inverse(),
             beyond: Beyond::default(),
-        })
+        }
     }
 
     /// Adds the force and moment on a sphere at this place relative to the centre.
@@ -287,7 +287,7 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
             let template = &templates[clump.template as usize];
             let mut squeeze = Matrix3::zeros();
             let can_break = template.breaks_from_n_m.is_finite();
-            let mut bending = Bending::of(clump, template);
+            let mut bending: Option<Bending<'_>> = None;
             let [from, to] = clump.near.map(|n| n as usize);
             for i in near[from..to].iter().map(|&i| i as usize - part.first) {
                 let wrench = &mut part.wrenches[i];
@@ -298,13 +298,14 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
                 let moment = Vector3::new(tx, ty, tz) + arm.cross(&on_sphere);
                 force += on_sphere;
                 torque += moment;
-                if let Some(bending) = &mut bending {
-                    bending.add(&arm, [on_sphere, moment]);
-                }
                 *wrench = Wrench::default();
                 if can_break && on_sphere != Vector3::zeros() {
                     let to_contact = part.poses[i].radius_m() * on_sphere.normalize();
                     squeeze += on_sphere * (arm - to_contact).transpose();
+                    if let Some(body) = &template.slender {
+                        let bending = bending.get_or_insert_with(|| Bending::of(clump, body));
+                        bending.add(&arm, [on_sphere, moment]);
+                    }
                 }
             }
             if can_break {

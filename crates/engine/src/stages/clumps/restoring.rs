@@ -267,7 +267,11 @@ fn fragment_template(
         scatter: None,
         bonds_of_file: Arc::new((0..own.len() as u32).collect()),
         breaks_from_n_m: breaks_from_n_m(&own, &spheres),
-        slender: slender_body(&own, &spheres, properties.moments_kg_m2),
+        slender: slender_body(
+            &own,
+            &spheres,
+            (properties.mass_kg, properties.moments_kg_m2),
+        ),
         bonds: Arc::new(own),
         spheres: Arc::new(spheres),
         landing: Default::default(),

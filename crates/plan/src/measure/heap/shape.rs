@@ -35,7 +35,7 @@ const HALF_FLAT: [f64; 2] = [0.9, 0.6];
 /// Smallest skewness of the height between a flat bed and a cone: below it the top is cut off. It
 /// is 0.86 for a cone, 0.7 to 0.8 of most heaps of scenes, 0.5 of a wet heap and of a paraboloid,
 /// 0.25 to 0.46 of cones whose plateau has half their radius.
-const BLUNT: f64 = 0.47;
+const BLUNT: f64 = 0.44;
 /// Fewest layers of which the heights of spheres show whether a top is cut off.
 const FEWEST_LAYERS: f64 = 3.0;
 /// Skewness of the height of a cone.
