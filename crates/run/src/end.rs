@@ -86,11 +86,9 @@ impl Run<'_> {
         summary.notes.extend(note.map(|flying| flying.text));
         summary.notes.extend(parted_without_contacts(&self.state));
         if !is_stopped {
-            let monitors = &self.progress.monitors;
-            summary.notes.extend(monitors.beyond_after_the_peak());
-            summary.notes.extend(zero_measures(&self.probes));
-            let pieces = fragments.as_deref().unwrap_or_default();
-            summary.notes.extend(past_walls(&self.state, pieces));
+            summary
+                .notes
+                .extend(self.notes(fragments.as_deref().unwrap_or_default()));
         }
         let outputs = self.outputs.iter();
         (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));
@@ -115,6 +113,14 @@ impl Run<'_> {
             summary,
             problem: ended.problem,
         })
+    }
+
+    /// Notes on a run that was not stopped, and its pieces.
+    fn notes(&self, pieces: &[Fragment]) -> Vec<String> {
+        let mut notes = self.progress.monitors.beyond_after_the_peak();
+        notes.extend(zero_measures(&self.probes));
+        notes.extend(past_walls(&self.state, pieces));
+        notes
     }
 
     /// The hits of rigid clumps, those that go on included. A continued run goes on with them.

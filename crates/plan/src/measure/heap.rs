@@ -6,10 +6,12 @@
 //! mean r^2). Spheres count with their own extent. The third shows whether there is a slope at all:
 //! a bed with a flat top has none. What is no cone has no slope, as [`shape`] finds it.
 
+mod moments;
 mod shape;
 
 use nalgebra::Vector3;
 
+use self::moments::{moments, turned};
 use self::shape::is_one_heap;
 use super::measurement::{Measurement, Planned, Settles};
 use super::probe::Probe;
@@ -73,26 +75,6 @@ fn few(measure: &Measure, planned: &Planned<'_>) -> Option<usize> {
     (count < FEWEST_IN_HEAP).then_some(count)
 }
 
-/// A sphere: mass, kg, radius, m, height, and two coordinates across, m.
-struct Sphere {
-    mass_kg: f64,
-    radius_m: f64,
-    height_m: f64,
-    across_m: [f64; 2],
-}
-
-/// Moments of a heap's mass.
-struct Moments {
-    /// Position of the axis.
-    middle_m: [f64; 2],
-    /// Variance of the height, m2.
-    upright_m2: f64,
-    /// Mean square distance from the axis, m2.
-    across_m2: f64,
-    /// Covariance of height and square distance, m3.
-    covariance_m3: f64,
-}
-
 /// Slope, degrees, of the cone with the same vertical and horizontal spread of mass as the spheres;
 /// 0 if their top is flat. A few that have rolled far away do not change it. NaN for fewer than
 /// [`FEWEST_IN_HEAP`], and if they are not one round heap. `up`: unit vector.
@@ -119,38 +101,5 @@ fn angle_of_repose_deg(spheres: &[spheres::Sphere], up: Vector3<f64>) -> f64 {
             let fraction = (falling / (CONICAL * slope)).clamp(0.0, 1.0);
             return (fraction * slope).atan().to_degrees();
         }
-    }
-}
-
-/// The spheres, along axes of which one points up.
-fn turned(spheres: &[spheres::Sphere], up: &Vector3<f64>) -> Vec<Sphere> {
-    let [aside, across] = spheres::across(up);
-    let turned = |sphere: &spheres::Sphere| Sphere {
-        mass_kg: sphere.mass_kg,
-        radius_m: sphere.radius_m,
-        height_m: sphere.place_m.dot(up),
-        across_m: [sphere.place_m.dot(&aside), sphere.place_m.dot(&across)],
-    };
-    spheres.iter().map(turned).collect()
-}
-
-fn moments(heap: &[Sphere]) -> Moments {
-    let mass_kg: f64 = heap.iter().map(|sphere| sphere.mass_kg).sum();
-    let mean =
-        |of: &dyn Fn(&Sphere) -> f64| heap.iter().map(|s| s.mass_kg * of(s)).sum::<f64>() / mass_kg;
-    let middle_m = [0, 1].map(|k| mean(&|s| s.across_m[k]));
-    let height_m = mean(&|s| s.height_m);
-    let square = |s: &Sphere| {
-        let [x, y] = [0, 1].map(|k| s.across_m[k] - middle_m[k]);
-        x * x + y * y
-    };
-    let square_m2 = mean(&square);
-    // A solid sphere's own variance along any axis.
-    let own_m2 = 0.2 * mean(&|s| s.radius_m * s.radius_m);
-    Moments {
-        middle_m,
-        upright_m2: own_m2 + mean(&|s| (s.height_m - height_m).powi(2)),
-        across_m2: 2.0 * own_m2 + square_m2,
-        covariance_m3: mean(&|s| (s.height_m - height_m) * (square(s) - square_m2)),
     }
 }

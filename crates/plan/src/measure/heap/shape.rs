@@ -6,7 +6,7 @@
 //! heaps of 55 to 2,500 spheres that scenes left: lifted, poured, wet, and of broken tablets. Means
 //! over n spheres scatter by a part of 1/sqrt(n), by which the limits are wider.
 
-use super::{Moments, Sphere};
+use super::moments::{Moments, Sphere};
 
 /// Part of the mass that lies within a quarter of the cone's radius from its axis, at least: 0.156
 /// of a cone, 0.104 of a flat disc, 0.03 to 0.07 of heaps in a triangle.
@@ -98,12 +98,12 @@ impl<'a> Shape<'a> {
 
     /// Distance of a sphere from the axis, m.
     fn distance_m(&self, sphere: &Sphere) -> f64 {
-        let [x, y] = self.from_axis_m(sphere);
+        let [x, y] = self.beside_axis_m(sphere);
         x.hypot(y)
     }
 
     /// Position of a sphere from the axis, m.
-    fn from_axis_m(&self, sphere: &Sphere) -> [f64; 2] {
+    fn beside_axis_m(&self, sphere: &Sphere) -> [f64; 2] {
         [0, 1].map(|k| sphere.across_m[k] - self.moments.middle_m[k])
     }
 
@@ -123,7 +123,7 @@ impl<'a> Shape<'a> {
     /// Length of the mean of (x + i y)^m times a factor.
     fn harmonic(&self, m: i32, factor: impl Fn(&Sphere) -> f64) -> f64 {
         let power = |s: &Sphere| {
-            let [x, y] = self.from_axis_m(s);
+            let [x, y] = self.beside_axis_m(s);
             (1..m).fold([x, y], |[a, b], _| [a * x - b * y, a * y + b * x])
         };
         let [x, y] = [0, 1].map(|k| self.mean(|s| power(s)[k] * factor(s)));
