@@ -61,6 +61,8 @@ pub(super) struct Monitors {
     pub(super) largest_kinetic_j: f64,
     /// Largest force of standing walls on all that touches them, N.
     pub(super) largest_stand_n: f64,
+    /// Whether these walls have ever exerted no force.
+    pub(super) stood_free: bool,
     /// Of a test whose answers are those at its largest load: this load, N, and the extremes at it,
     /// of strain, plastic strain and indentation.
     pub(super) at_peak: Option<(f64, [Extreme; 3])>,
@@ -132,7 +134,9 @@ impl Monitors {
 
     /// Records the force of standing walls.
     pub(super) fn note_stand(&mut self, state: &State) {
-        self.largest_stand_n = self.largest_stand_n.max(stand_n(state));
+        let force_n = stand_n(state);
+        self.largest_stand_n = self.largest_stand_n.max(force_n);
+        self.stood_free |= force_n == 0.0;
     }
 
     /// Records the kinetic energy, J.
