@@ -4,7 +4,6 @@
 pub mod bodies;
 pub mod bonds;
 pub mod bridges;
-pub(crate) mod clump_stress;
 pub mod clump_touches;
 pub mod clumps;
 pub mod clusters;

@@ -5,6 +5,7 @@ pub mod bending;
 pub mod bond;
 pub mod breakage;
 pub mod chebyshev;
+pub mod clump_stress;
 pub mod contact;
 pub mod dual;
 pub mod geometry;

@@ -86,9 +86,8 @@ impl Run<'_> {
         summary.notes.extend(note.map(|flying| flying.text));
         summary.notes.extend(parted_without_contacts(&self.state));
         if !is_stopped {
-            summary
-                .notes
-                .extend(self.notes(fragments.as_deref().unwrap_or_default()));
+            let pieces = fragments.as_deref().unwrap_or_default();
+            summary.notes.extend(self.notes(pieces));
         }
         let outputs = self.outputs.iter();
         (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));

@@ -1,6 +1,6 @@
 //! Hits of rigid clumps that would have broken their bonds: see [`Hits`].
 //!
-//! [`Hits`]: dem_engine::state::clump_stress::Hits
+//! [`Hits`]: dem_physics::clump_stress::Hits
 
 use std::collections::BTreeMap;
 

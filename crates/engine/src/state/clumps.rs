@@ -8,10 +8,10 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
-use super::clump_stress::Hits;
 use super::particles::{Motion, Particles, Pose, Wrench};
 use dem_physics::bending::{self, SlenderBody};
 use dem_physics::bond::failure::{Criteria, smallest_strength_pa};
+use dem_physics::clump_stress::Hits;
 use dem_physics::rotation::{kinetic_j, spin_rad_s};
 use dem_physics::rotation::{numbers, rotation};
 use dem_physics::shape::inertia::MassProperties;

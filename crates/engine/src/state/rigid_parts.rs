@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
-use super::clump_stress::Hits;
 use super::clumps::{SubSphere, sphere_volume_m3, sub_spheres};
 use super::particles::{Motion, Pose};
 use super::renumbered::{NewNumbers, Renumbered};
 use dem_physics::bond::failure::smallest_strength_pa;
+use dem_physics::clump_stress::Hits;
 use dem_physics::rotation::{kinetic_j, rotation, spin_rad_s};
 use dem_physics::shape::inertia::{MassProperties, of_spheres};
 

@@ -1,7 +1,6 @@
 //! Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 
 use super::bridges::BridgeScratch;
-use super::clump_stress::Squeeze;
 use super::clump_touches::ClumpTouch;
 use super::clusters::Clusters;
 use super::events::Events;
@@ -11,6 +10,7 @@ use super::partitions::Partition;
 use super::population::{OutletWatch, Surroundings};
 use crate::clock::StageClock;
 use dem_physics::chebyshev::Chebyshev;
+use dem_physics::clump_stress::Squeeze;
 
 /// Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 /// Contacts, clusters and walls have such parts of their own.

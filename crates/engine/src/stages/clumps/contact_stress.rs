@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use crate::stages::contacts::forces::{pair_force_n, touch_point_m};
 use crate::stages::walls::{self, touch_force_n};
 use crate::state::State;
-use crate::state::clump_stress::Squeeze;
 use crate::state::contacts::Contacts;
+use dem_physics::clump_stress::Squeeze;
 
 /// Sets `squeezes` to the squeeze of each clump; to none if no trigger needs it. Returns the number
 /// of contacts read.

@@ -7,11 +7,11 @@ use super::touched::find_touched;
 use crate::stages::population::change::apply_topology_change;
 use crate::stages::stage::{Need, Stage};
 use crate::state::State;
-use crate::state::clump_stress::Squeeze;
 use crate::state::clumps::Clump;
 use crate::state::events::TopologyChange;
 use crate::state::events::{PopulationEvent, STARTS_BONDED};
 use crate::state::rules::Trigger;
+use dem_physics::clump_stress::Squeeze;
 
 /// Clumps that become clusters, and clusters that become clumps.
 pub(crate) const REPLACEMENT: Stage = Stage::new("replacement", |state, _| {

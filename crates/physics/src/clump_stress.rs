@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 /// The contacts of a clump at the end of a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Squeeze {
+pub struct Squeeze {
     /// Largest force of a single contact, N.
-    pub(crate) largest_n: f64,
+    pub largest_n: f64,
     /// Sum over the contacts of their force times the way from the clump's centre to the contact
     /// point (dyadic products), N m: the mean stress (Love 1927, Weber 1966) times the volume.
     moment_n_m: Matrix3<f64>,
@@ -16,11 +16,12 @@ pub(crate) struct Squeeze {
 impl Squeeze {
     /// Largest principal value, by magnitude, of the mean stress in this volume, m3, in Pa. The
     /// antisymmetric part, which belongs to a torque on the clump, is left out.
-    pub(crate) fn principal_stress_pa(&self, volume_m3: f64) -> f64 {
+    pub fn principal_stress_pa(&self, volume_m3: f64) -> f64 {
         principal(&self.moment_n_m) / volume_m3
     }
 
-    pub(crate) fn add(&mut self, force_n: Vector3<f64>, arm_m: Vector3<f64>) {
+    /// Adds a contact with this force, N, at this way from the centre, m.
+    pub fn add(&mut self, force_n: Vector3<f64>, arm_m: Vector3<f64>) {
         self.largest_n = self.largest_n.max(force_n.norm());
         self.moment_n_m += force_n * arm_m.transpose();
     }
@@ -44,13 +45,13 @@ pub struct Hits {
     /// The largest value of these, N m.
     pub largest_n_m: f64,
     /// Stress of bending of a slender clump, Pa: in a short hit that which its modes have followed.
-    pub(crate) bending_pa: f64,
+    pub bending_pa: f64,
 }
 
 impl Hits {
     /// Records the contacts of a step: the sum of their forces times the ways from the clump's
     /// centre to the contact points, N m, or None without a contact.
-    pub(crate) fn note(&mut self, moment_n_m: Option<&Matrix3<f64>>, breaks_from_n_m: f64) {
+    pub fn note(&mut self, moment_n_m: Option<&Matrix3<f64>>, breaks_from_n_m: f64) {
         let Some(moment_n_m) = moment_n_m else {
             self.end();
             self.bending_pa = 0.0;
@@ -68,7 +69,7 @@ impl Hits {
 
     /// Records the stress of bending of a slender clump that is touched, Pa, and the rate at which
     /// its modes follow it, Pa/s, over a step of `dt`, s.
-    pub(crate) fn note_bending(
+    pub fn note_bending(
         &mut self,
         [stress_pa, rate_pa_s]: [f64; 2],
         dt: f64,
