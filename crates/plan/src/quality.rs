@@ -11,10 +11,10 @@ use dem_scene::{BodySource, BondKind, Scene};
 use nalgebra::Vector3;
 
 use super::bodies::{sphere_density_kg_m3, stays_rigid};
+use super::bond_kinds::rule;
 use dem_engine::stages::search::neighbours::near_pairs;
 use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
 use dem_engine::state::particles::Pose;
-use dem_physics::bond::failure::EquivalentStress;
 
 /// As dem-pack: number of bonds per particle below which a body is hardly rigid.
 const ENOUGH_BONDS: f64 = 3.0;
@@ -111,12 +111,11 @@ fn bond_kind<'a>(scene: &'a Scene, name: &str) -> Option<&'a BondKind> {
 
 /// A sentence on a row of spheres with bonds that do not break when they are bent.
 fn unbreakable_row(kind: &BondKind, body: &Body) -> Option<String> {
-    let failure = &kind.failure;
-    let counts_bending = failure.equivalent_stress != EquivalentStress::ForcesOnly
-        || failure.tensile_strength_pa.is_some()
-        || failure.compressive_strength_pa.is_some();
+    let criteria = rule(kind).criteria?;
+    let leaves_bending_out =
+        criteria.von_mises_strength_pa.is_finite() && !criteria.count_bending();
     let is_long = body.radii.len() >= FEWEST && is_row(body);
-    (is_long && failure.von_mises_strength_pa.is_some() && !counts_bending).then(|| {
+    (is_long && leaves_bending_out).then(|| {
         "it is a single row of bonds, and with equivalent_stress = \"forces-only\" bending and torsion alone do not break them; write equivalent_stress = \"tensile-edge\", or tensile_strength".to_owned()
     })
 }

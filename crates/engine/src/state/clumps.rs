@@ -143,7 +143,7 @@ pub struct Template {
     pub bonds_of_file: Arc<Vec<u32>>,
     /// Mean stress times volume from which its bonds would break, N m; infinite if they cannot.
     pub breaks_from_n_m: f64,
-    /// Its sections. None: it is not slender, or cannot break.
+    /// Its sections. None: it is not slender, or bending does not break its bonds.
     pub slender: Option<SlenderBody>,
     /// What its clumps land on, once it is known.
     #[serde(skip)]
